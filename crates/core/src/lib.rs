@@ -1,0 +1,6 @@
+//! The engine of Lúč.
+#![warn(missing_docs)]
+#![forbid(unsafe_code)]
+
+pub mod quality;
+pub mod render;
