@@ -1,0 +1,19 @@
+//! Deterministic mathematics: the same bits on every processor, build and thread.
+//!
+//! The standard library's transcendental functions differ between platforms, and even between a value
+//! folded by the compiler and one computed at run time. Nothing here calls them. Everything is made of
+//! IEEE operations that have one right answer (+ − × ÷ √, comparisons, integer work), without fused
+//! multiply-add and without reciprocal estimates.
+//!
+//! * [`scalar`]: `sin`, `exp`, `pow`, … for one number, computed in f64 and rounded once.
+//! * [`lanes`]: eight numbers side by side ([`lanes::F`]), and vectors of them ([`lanes::V3`]).
+//! * [`lanes_fn`]: the elementary functions for eight numbers, in f32.
+//! * [`hash`]: random numbers as a pure function of pixel, frame and dimension.
+
+pub mod hash;
+pub mod lanes;
+pub mod lanes_fn;
+pub mod scalar;
+
+#[cfg(test)]
+mod check;

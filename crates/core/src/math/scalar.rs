@@ -1,0 +1,429 @@
+//! Elementary functions for one f32, computed in f64 and rounded once.
+//!
+//! Each function reduces its argument, evaluates one short minimax polynomial in f64 (relative error
+//! below 2⁻³¹) and rounds to f32, so the result is within 0.51 ulp of the exact value. Four kernels serve
+//! all of them:
+//!
+//! * 2^t = 2ⁿ·2^r, r ∈ [−½, ½]
+//! * log₂ v = k + (2/ln 2)·atanh((m−1)/(m+1)), m ∈ [√½, √2)
+//! * sin, cos on [−π/4, π/4] after subtracting n·π/2 in two pieces (Cody & Waite 1980)
+//! * atan on [0, tan π/8], larger quotients turned by π/4
+//!
+//! NaN in gives NaN out everywhere. Subnormal arguments and results are exact like all others.
+
+use core::f64::consts::{FRAC_1_SQRT_2, FRAC_2_PI, FRAC_PI_2, FRAC_PI_4, LN_2, LOG2_E, PI};
+
+/// Adding this to |t| < 2⁵¹ rounds t to the nearest integer and leaves it in the low bits.
+const ROUND: f64 = 6755399441055744.0; // 1.5·2⁵²
+
+/// c₀ + z·(c₁ + z·(…)), the coefficients from the lowest power up.
+#[inline(always)]
+fn poly<const N: usize>(z: f64, c: [f64; N]) -> f64 {
+    c[..N - 1].iter().rev().fold(c[N - 1], |sum, c| sum * z + c)
+}
+
+/// 2^t; inf and 0 far outside the f32 range; error 2⁻³³ relative, exact for integers.
+#[inline(never)]
+fn exp2_kernel(t: f64) -> f64 {
+    // Within ±1000 the scale stays a normal f64, beyond it f32 has only 0 and inf.
+    let t = t.clamp(-1000.0, 1000.0);
+    let shifted = t + ROUND;
+    let r = t - (shifted - ROUND);
+    let fraction = poly(
+        r,
+        [
+            LN_2,
+            0.24022650922288757,
+            0.055504108839096185,
+            0.009618056678524637,
+            0.001333350238616277,
+            0.0001546144469856913,
+            1.5297323760701075e-05,
+        ],
+    );
+    let scale = f64::from_bits(shifted.to_bits().wrapping_add(1023) << 52);
+    (1.0 + r * fraction) * scale
+}
+
+/// log₂ v; −inf at ±0, NaN below; error 2⁻³⁷ relative, exact for powers of two.
+#[inline(never)]
+fn log2_kernel(v: f64) -> f64 {
+    if !(v > 0.0 && v < f64::INFINITY) {
+        return if v == 0.0 {
+            f64::NEG_INFINITY
+        } else if v > 0.0 {
+            v
+        } else {
+            f64::NAN
+        };
+    }
+    // Callers pass f32 values, which are never subnormal in f64.
+    let k = (v.to_bits().wrapping_sub(FRAC_1_SQRT_2.to_bits()) as i64) >> 52;
+    let m = f64::from_bits(v.to_bits().wrapping_sub((k << 52) as u64));
+    let s = (m - 1.0) / (m + 1.0);
+    let odd = poly(
+        s * s,
+        [2.885390081789987, 0.9617966734515485, 0.5770835660048659, 0.41167376623771057, 0.3407120415619086],
+    );
+    k as f64 + s * odd
+}
+
+/// (sin x, cos x) before rounding.
+#[inline(never)]
+fn sin_cos_kernel(x: f64) -> (f64, f64) {
+    // π/2 as 33 + 53 bits: n times the first piece is exact for n < 2²⁰.
+    const HIGH: f64 = 1.5707963267341256;
+    const LOW: f64 = 6.077100506506192e-11;
+    let shifted = x * FRAC_2_PI + ROUND;
+    let n = shifted - ROUND;
+    // The clamp only acts where |x| is so large that the remainder is lost anyway.
+    let r = ((x - n * HIGH) - n * LOW).clamp(-1.0, 1.0);
+    let z = r * r;
+    let sin =
+        poly(z, [-0.16666666663854168, 0.008333331874273714, -0.000198400864995936, 2.7249895230611676e-06]);
+    let cos =
+        poly(z, [-0.49999999969106984, 0.041666650639724655, -0.0013887588896733915, 2.4463754730095443e-05]);
+    // This form of the sine keeps the sign of −0.
+    let (sin, cos) = (r * (1.0 + z * sin), 1.0 + z * cos);
+    match shifted.to_bits() & 3 {
+        0 => (sin, cos),
+        1 => (cos, -sin),
+        2 => (-sin, -cos),
+        _ => (-cos, sin),
+    }
+}
+
+/// The angle of (x, y) before rounding.
+#[inline(never)]
+fn atan2_kernel(y: f64, x: f64) -> f64 {
+    let (ax, ay) = (x.abs(), y.abs());
+    let (low, high) = if ay > ax { (ax, ay) } else { (ay, ax) };
+    let quotient = if low == high {
+        // 0/0 is the angle 0, inf/inf the diagonal.
+        if low == 0.0 { 0.0 } else { 1.0 }
+    } else {
+        low / high
+    };
+    let (t, turn) = if quotient > 0.41421356237309503 {
+        ((quotient - 1.0) / (quotient + 1.0), FRAC_PI_4)
+    } else {
+        (quotient, 0.0)
+    };
+    let z = t * t;
+    let odd = poly(
+        z,
+        [
+            -0.3333333327922454,
+            0.1999997724823353,
+            -0.14284150629730288,
+            0.11071354571201351,
+            -0.08624598215196126,
+            0.05047937432040091,
+        ],
+    );
+    let mut angle = turn + (t + t * z * odd);
+    if ay > ax {
+        angle = FRAC_PI_2 - angle;
+    }
+    if x.is_sign_negative() {
+        angle = PI - angle;
+    }
+    angle.copysign(y)
+}
+
+/// Sine of `x` radians. Error ≤ 0.51 ulp for |x| ≤ 1.6e6; beyond that an absolute error of |x|·2⁻⁵²
+/// up to 2⁵⁰ and any value in [−1, 1] from there on; NaN for ±inf. `sin(-0.0)` is −0.
+pub fn sin(x: f32) -> f32 {
+    sin_cos(x).0
+}
+
+/// Cosine of `x` radians; range and error as [`sin`].
+pub fn cos(x: f32) -> f32 {
+    sin_cos(x).1
+}
+
+/// Sine and cosine of `x` radians at the price of one; range and error as [`sin`].
+pub fn sin_cos(x: f32) -> (f32, f32) {
+    let (sin, cos) = sin_cos_kernel(x.into());
+    (sin as f32, cos as f32)
+}
+
+/// e^x. Error ≤ 0.51 ulp; inf above 88.72, subnormal below −87.34, 0 below −103.98; `exp(0)` is 1.
+pub fn exp(x: f32) -> f32 {
+    exp2_kernel(f64::from(x) * LOG2_E) as f32
+}
+
+/// 2^x. Error ≤ 0.51 ulp, exact for integers; inf from 128, subnormal below −126, 0 from −150.
+pub fn exp2(x: f32) -> f32 {
+    exp2_kernel(x.into()) as f32
+}
+
+/// Natural logarithm. Error ≤ 0.51 ulp; −inf for ±0, NaN below 0, inf for inf; `ln(1)` is +0.
+pub fn ln(x: f32) -> f32 {
+    (log2_kernel(x.into()) * LN_2) as f32
+}
+
+/// Logarithm to base 2. Error ≤ 0.51 ulp, exact for powers of two; edge cases as [`ln`].
+pub fn log2(x: f32) -> f32 {
+    log2_kernel(x.into()) as f32
+}
+
+/// x^y before rounding.
+fn pow_kernel(x: f32, y: f32) -> f64 {
+    let t = f64::from(y) * log2_kernel(x.into());
+    // With numbers given, the only NaN from a base that has a logarithm is 0·inf.
+    if t.is_nan() && x >= 0.0 && !y.is_nan() {
+        return 1.0;
+    }
+    exp2_kernel(t)
+}
+
+/// x^y for x ≥ 0. Error ≤ 0.51 ulp.
+///
+/// A negative base gives NaN for every y, integer or not; −0 counts as 0. `pow(0, y)` is 0 for y > 0 and
+/// inf for y < 0; `pow(x, 0)` and `pow(1, y)` are 1 unless an argument is NaN; overflow is inf.
+pub fn pow(x: f32, y: f32) -> f32 {
+    pow_kernel(x, y) as f32
+}
+
+/// Arc cosine in radians, 0..=π. Error ≤ 0.51 ulp; NaN outside [−1, 1].
+pub fn acos(x: f32) -> f32 {
+    let x = f64::from(x);
+    // 1 − |x| is exact in f64, so the sine keeps its relative accuracy next to ±1.
+    atan2_kernel(((1.0 - x) * (1.0 + x)).sqrt(), x) as f32
+}
+
+/// Angle of the point (x, y) in radians, −π..=π. Error ≤ 0.51 ulp.
+///
+/// Signed zeros and infinities as in IEEE 754: `atan2(0, -1)` is π, `atan2(-0, -1)` is −π,
+/// `atan2(0, 0)` is 0, `atan2(inf, inf)` is π/4.
+pub fn atan2(y: f32, x: f32) -> f32 {
+    atan2_kernel(y.into(), x.into()) as f32
+}
+
+/// Linear light 0..=1 to the sRGB display value 0..=1 (IEC 61966-2-1). Arguments outside are clamped.
+/// Error ≤ 0.51 ulp.
+pub fn srgb_encode(linear: f32) -> f32 {
+    let v = linear.clamp(0.0, 1.0);
+    if v <= 0.0031308 {
+        (12.92 * f64::from(v)) as f32
+    } else {
+        (1.055 * exp2_kernel(log2_kernel(v.into()) / 2.4) - 0.055) as f32
+    }
+}
+
+/// sRGB display value 0..=1 to linear light 0..=1, the inverse of [`srgb_encode`]; clamps likewise.
+/// Error ≤ 0.51 ulp.
+pub fn srgb_decode(display: f32) -> f32 {
+    let v = f64::from(display.clamp(0.0, 1.0));
+    let linear = if v <= 0.04045 { v / 12.92 } else { exp2_kernel(2.4 * log2_kernel((v + 0.055) / 1.055)) };
+    linear as f32
+}
+
+#[cfg(test)]
+// The standard functions serve as the reference, in f64, and never reach a pixel.
+#[allow(clippy::disallowed_methods)]
+mod tests {
+    use super::*;
+    use crate::math::check::{Fingerprint, Worst, bits_spread, every_1009th};
+
+    /// Largest error of `f` against `reference` over every 1009th float that `domain` accepts.
+    fn worst(name: &str, domain: fn(f32) -> bool, f: fn(f32) -> f32, reference: fn(f64) -> f64) -> f64 {
+        let mut worst = Worst::new(name);
+        every_1009th().filter(|&x| domain(x)).for_each(|x| worst.add(x, f(x), reference(x.into())));
+        worst.ulp()
+    }
+
+    #[test]
+    fn one_argument_functions_are_within_0_51_ulp_over_the_whole_range() {
+        let all = |x: f32| !x.is_nan();
+        assert!(worst("exp", all, exp, f64::exp) <= 0.51);
+        assert!(worst("exp2", all, exp2, f64::exp2) <= 0.51);
+        assert!(worst("ln", all, ln, f64::ln) <= 0.51);
+        assert!(worst("log2", all, log2, f64::log2) <= 0.51);
+        assert!(worst("acos", all, acos, f64::acos) <= 0.51);
+        let reducible = |x: f32| x.abs() <= 1.6e6;
+        assert!(worst("sin", reducible, sin, f64::sin) <= 0.51);
+        assert!(worst("cos", reducible, cos, f64::cos) <= 0.51);
+    }
+
+    #[test]
+    fn small_steps_around_the_interesting_points_are_within_0_51_ulp() {
+        let near = |centre: f32| {
+            (-4000i32..4000).map(move |i| f32::from_bits(centre.to_bits().wrapping_add_signed(i)))
+        };
+        let mut worst = Worst::new("dense neighbourhoods");
+        for x in near(1.0).chain(near(0.5)).chain(near(0.70710677)).chain(near(2.0)) {
+            worst.add(x, ln(x), f64::from(x).ln());
+            worst.add(x, log2(x), f64::from(x).log2());
+            worst.add(x, acos(x), f64::from(x).acos());
+            worst.add(-x, acos(-x), f64::from(-x).acos());
+            worst.add(x, exp(x), f64::from(x).exp());
+        }
+        for n in 1..2000 {
+            for x in
+                [n as f32 * core::f32::consts::FRAC_PI_2, n as f32 * 700.0 * core::f32::consts::FRAC_PI_2]
+            {
+                for x in [x.next_down(), x, x.next_up()] {
+                    worst.add(x, sin(x), f64::from(x).sin());
+                    worst.add(x, cos(x), f64::from(x).cos());
+                }
+            }
+        }
+        assert!(worst.ulp() <= 0.51);
+    }
+
+    #[test]
+    fn huge_angles_lose_accuracy_in_proportion_and_stay_in_range() {
+        for x in every_1009th().filter(|x| x.is_finite() && x.abs() > 1.6e6) {
+            let (s, c) = sin_cos(x);
+            assert!(s.abs() <= 1.0 && c.abs() <= 1.0, "{x}");
+            if f64::from(x).abs() < 2f64.powi(50) {
+                let allowed = f64::from(x).abs() * 2f64.powi(-52) + 6e-8;
+                assert!((f64::from(s) - f64::from(x).sin()).abs() <= allowed, "{x}");
+                assert!((f64::from(c) - f64::from(x).cos()).abs() <= allowed, "{x}");
+            }
+        }
+    }
+
+    #[test]
+    fn pow_is_within_0_51_ulp() {
+        let mut worst = Worst::new("pow");
+        for i in 0..2_000_000 {
+            let x = f32::from_bits(bits_spread(i, 1) & 0x7fff_ffff);
+            // Half of the exponents aim at results inside the f32 range.
+            let y = f32::from_bits(bits_spread(i, 2));
+            let y = if i % 2 == 0 { (y.abs().min(1e30) as f64 % 260.0 - 130.0) as f32 / log2(x) } else { y };
+            if !x.is_nan() && !y.is_nan() {
+                worst.add(x, pow(x, y), f64::from(x).powf(y.into()));
+            }
+        }
+        assert!(worst.ulp() <= 0.51);
+    }
+
+    #[test]
+    fn atan2_is_within_0_51_ulp() {
+        let mut worst = Worst::new("atan2");
+        for i in 0..2_000_000 {
+            let x = f32::from_bits(bits_spread(i, 3));
+            let y = f32::from_bits(bits_spread(i, 4));
+            // Half of the points have comparable coordinates.
+            let y = if i % 2 == 0 { x * (y.abs().min(1e30) as f64 % 4.0 - 2.0) as f32 } else { y };
+            if !x.is_nan() && !y.is_nan() {
+                worst.add(y, atan2(y, x), f64::from(y).atan2(x.into()));
+            }
+        }
+        for y in [0.0, -0.0, 1.0, -1.0, 1e-45, f32::MAX, f32::INFINITY, f32::NEG_INFINITY] {
+            for x in [0.0, -0.0, 1.0, -1.0, 1e-45, -1e-45, f32::MAX, f32::INFINITY, f32::NEG_INFINITY] {
+                worst.add(y, atan2(y, x), f64::from(y).atan2(x.into()));
+                assert_eq!(atan2(y, x).is_sign_negative(), y.is_sign_negative(), "{y} {x}");
+            }
+        }
+        assert!(worst.ulp() <= 0.51);
+    }
+
+    #[test]
+    fn srgb_is_within_0_51_ulp_and_its_own_inverse_on_all_bytes() {
+        let unit = |x: f32| (0.0..=1.0).contains(&x);
+        let encode =
+            |v: f64| if v <= f64::from(0.0031308f32) { 12.92 * v } else { 1.055 * v.powf(1.0 / 2.4) - 0.055 };
+        let decode = |v: f64| if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) };
+        assert!(worst("srgb_encode", unit, srgb_encode, encode) <= 0.51);
+        assert!(worst("srgb_decode", unit, srgb_decode, decode) <= 0.51);
+        for byte in 0..=255 {
+            let display = byte as f32 / 255.0;
+            assert_eq!((srgb_encode(srgb_decode(display)) * 255.0 + 0.5) as i32, byte);
+        }
+        assert_eq!((srgb_encode(-1.0), srgb_encode(9.0)), (0.0, 1.0));
+        assert_eq!((srgb_decode(-1.0), srgb_decode(9.0)), (0.0, 1.0));
+    }
+
+    #[test]
+    fn nan_in_gives_nan_out() {
+        for f in [sin, cos, exp, exp2, ln, log2, acos, srgb_encode, srgb_decode] {
+            assert!(f(f32::NAN).is_nan());
+        }
+        for f in [pow, atan2] {
+            for x in [0.0, 1.0, -1.0, f32::INFINITY] {
+                assert!(f(f32::NAN, x).is_nan() && f(x, f32::NAN).is_nan());
+            }
+        }
+    }
+
+    #[test]
+    fn special_values_are_as_documented() {
+        let inf = f32::INFINITY;
+        assert_eq!(
+            (exp(0.0), exp(-0.0), exp(inf), exp(-inf), exp(88.73), exp(-104.0)),
+            (1.0, 1.0, inf, 0.0, inf, 0.0)
+        );
+        assert_eq!((exp2(128.0), exp2(-149.0), exp2(-150.0)), (inf, f32::from_bits(1), 0.0));
+        for n in -149..128 {
+            let power = if n < -126 {
+                f32::from_bits(1 << (n + 149))
+            } else {
+                f32::from_bits(((n + 127) as u32) << 23)
+            };
+            assert_eq!(exp2(n as f32), power);
+            assert_eq!(log2(power), n as f32);
+        }
+        assert_eq!((ln(1.0).to_bits(), ln(0.0), ln(-0.0), ln(inf)), (0, -inf, -inf, inf));
+        assert!(ln(-1.0).is_nan() && log2(-1e-45).is_nan() && ln(-inf).is_nan());
+        assert_eq!((pow(0.0, 0.5), pow(0.0, -0.5), pow(-0.0, 3.0), pow(0.0, 0.0)), (0.0, inf, 0.0, 1.0));
+        assert_eq!((pow(inf, 0.0), pow(1.0, inf), pow(inf, -1.0), pow(0.5, inf)), (1.0, 1.0, 0.0, 0.0));
+        assert_eq!((pow(3.0, 4.0), pow(1e30, 2.0), pow(1e-30, 2.0)), (81.0, inf, 0.0));
+        assert!(pow(-2.0, 2.0).is_nan() && pow(-2.0, 0.0).is_nan());
+        assert_eq!((sin(0.0).to_bits(), sin(-0.0).to_bits(), cos(0.0)), (0, 1 << 31, 1.0));
+        assert!(sin(inf).is_nan() && cos(-inf).is_nan());
+        assert_eq!(
+            (acos(1.0), acos(-1.0), acos(0.0)),
+            (0.0, core::f32::consts::PI, core::f32::consts::FRAC_PI_2)
+        );
+        assert!(acos(1.0f32.next_up()).is_nan() && acos(-2.0).is_nan());
+    }
+
+    #[test]
+    fn bits_are_the_same_in_every_build() {
+        let one = |f: fn(f32) -> f32| {
+            let mut hash = Fingerprint::new();
+            (0..100_000u32).for_each(|i| hash.add(f(f32::from_bits(i.wrapping_mul(42_949)))));
+            hash.value()
+        };
+        let two = |f: fn(f32, f32) -> f32| {
+            let mut hash = Fingerprint::new();
+            let value = |i, k| f32::from_bits(0x2000_0000 + (bits_spread(i, k) >> 2));
+            (0..100_000u32).for_each(|i| hash.add(f(value(i, 5), value(i, 6))));
+            hash.value()
+        };
+        let got = [
+            one(sin),
+            one(cos),
+            one(exp),
+            one(exp2),
+            one(ln),
+            one(log2),
+            one(acos),
+            one(srgb_encode),
+            one(srgb_decode),
+            two(pow),
+            two(atan2),
+        ];
+        assert_eq!(
+            got,
+            [
+                0xaa21044108f99af4,
+                0x4787b75207d560aa,
+                0x6a3110abc35d89f6,
+                0xfbb0e1e1467c121c,
+                0x73c6ac092021312e,
+                0x174673f1c492a271,
+                0x7530481501b66996,
+                0x1e0a23c09ca2e652,
+                0x8f2468e11090ba02,
+                0x5d829da8cf8e1257,
+                0x720ca01f76fb5770
+            ],
+            "{got:#x?}"
+        );
+    }
+}
