@@ -1,6 +1,20 @@
 //! The player.
 fn main() {
+    let a: Vec<String> = std::env::args().collect();
+    let n: u64 = a[1].parse().unwrap();
+    let q = luc_core::quality::Quality::named(&a[2]).unwrap();
+    let (w, h): (u32, u32) = (a[3].parse().unwrap(), a[4].parse().unwrap());
     let mut renderer = luc_core::render::Renderer::default();
-    let mut pixels = vec![0; 1280 * 720];
-    luc::show::frame(&mut renderer, 0, (1280, 720), &luc_core::quality::Quality::PRESETS[3].1, &mut pixels);
+    let mut pixels = vec![0; (w * h) as usize];
+    for _ in 0..8 {
+        let t = std::time::Instant::now();
+        luc::show::frame(&mut renderer, n, (w, h), &q, &mut pixels);
+        eprint!("{:.1} ", t.elapsed().as_secs_f64() * 1e3);
+    }
+    eprintln!();
+    let mut out = format!("P6 {w} {h} 255\n").into_bytes();
+    for p in pixels {
+        out.extend([(p >> 16) as u8, (p >> 8) as u8, p as u8]);
+    }
+    std::fs::write(&a[5], out).unwrap();
 }

@@ -1,11 +1,21 @@
-//! The sequence: which part plays at which frame.
+//! The sequence: which part plays at which frame, and what a frame shows.
+//!
+//! Time is counted in frames, 60 a second, and beats, 120 a minute: integers. A part's scene is a
+//! pure function of its local frame, so any frame can be rendered on its own and nothing drifts.
+
+mod gold;
+mod mirror;
+mod paint;
 
 use luc_core::quality::Quality;
 use luc_core::render::Renderer;
-use rayon::prelude::*;
+use luc_core::scene::Scene;
 
 /// Frames a second.
 pub const FPS: u64 = 60;
+
+/// Frames of a bar of four beats, at 120 beats a minute.
+const BAR: u64 = 2 * FPS;
 
 /// One part of the show.
 pub struct Part {
@@ -13,35 +23,62 @@ pub struct Part {
     pub name: &'static str,
     /// Length in frames.
     pub frames: u64,
+    /// The scene at a local frame, `0 <= frame < frames`.
+    pub scene: fn(u64) -> Scene,
 }
 
 /// The parts in playing order.
-pub const PARTS: [Part; 2] =
-    [Part { name: "mirror", frames: 32 * FPS }, Part { name: "gold", frames: 32 * FPS }];
+pub const PARTS: [Part; 2] = [
+    Part { name: "mirror", frames: 16 * BAR, scene: mirror::scene },
+    Part { name: "gold", frames: 16 * BAR, scene: gold::scene },
+];
 
 /// Length of the whole show in frames; frame n is frame n mod this.
-pub const FRAMES: u64 = 64 * FPS;
+pub const FRAMES: u64 = 32 * BAR;
 
 /// First frame of the part with index `part`.
 pub fn start(part: usize) -> u64 {
     PARTS[..part].iter().map(|p| p.frames).sum()
 }
 
+/// The part that plays at frame `n` of the endless show, and the frame within it.
+pub fn at(n: u64) -> (usize, u64) {
+    let mut local = n % FRAMES;
+    let mut part = 0;
+    while local >= PARTS[part].frames {
+        local -= PARTS[part].frames;
+        part += 1;
+    }
+    (part, local)
+}
+
+/// The scene of frame `n`.
+pub fn scene(n: u64) -> Scene {
+    let (part, local) = at(n);
+    (PARTS[part].scene)(local)
+}
+
 /// Renders frame `n` of the show as 0RGB rows, top to bottom, into `pixels` (`width * height`).
-pub fn frame(
-    _renderer: &mut Renderer,
-    n: u64,
-    (width, height): (u32, u32),
-    _quality: &Quality,
-    pixels: &mut [u32],
-) {
-    let n = n % FRAMES;
-    pixels.par_chunks_mut(width as usize).enumerate().for_each(|(y, row)| {
-        for (x, p) in row.iter_mut().enumerate() {
-            let c =
-                glam::Vec3::new(x as f32 / width as f32, y as f32 / height as f32, n as f32 / FRAMES as f32);
-            let c = c * 255.0;
-            *p = (c.x as u32) << 16 | (c.y as u32) << 8 | c.z as u32;
+pub fn frame(renderer: &mut Renderer, n: u64, size: (u32, u32), quality: &Quality, pixels: &mut [u32]) {
+    renderer.frame(&scene(n), n % FRAMES, size, quality, pixels);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_parts_fill_the_show() {
+        assert_eq!(PARTS.iter().map(|p| p.frames).sum::<u64>(), FRAMES);
+        assert_eq!(start(PARTS.len()), FRAMES);
+    }
+
+    #[test]
+    fn every_frame_lies_in_its_part() {
+        for n in (0..2 * FRAMES).step_by(7).chain([u64::MAX, u64::MAX - 1]) {
+            let (part, local) = at(n);
+            assert!(local < PARTS[part].frames);
+            assert_eq!(start(part) + local, n % FRAMES, "frame {n}");
         }
-    });
+    }
 }

@@ -1,7 +1,40 @@
-//! The engine of Lúč.
+//! The engine of Lúč: rays traced on the CPU, as a pure function from a scene to pixels.
+//!
+//! **A scene** ([`scene::Scene`]) is plain data: shapes in one list per kind, materials, lights, a
+//! camera. **A quality** ([`quality::Quality`]) holds every knob that trades accuracy for time.
+//! **A frame** is what [`render::Renderer::frame`] makes of the two: the same bytes on any number of
+//! threads, in debug and release.
+//!
+//! How a frame flows, in the order of the modules: [`scene`] → [`render`] prepares a stage →
+//! [`sample`] decides where to trace → [`trace`] finds what rays hit, with [`cull`] leaving out what
+//! can't matter → [`shade`] lights it → [`post`] makes pixels, [`output`] files. [`math`] has
+//! everything that would differ between machines, [`counters`] what a frame did.
+//!
+//! ```
+//! use luc_core::{quality::Quality, render::Renderer, scene::*};
+//! use glam::Vec3;
+//!
+//! let red = Material { colour: Vec3::new(0.8, 0.1, 0.1), ..Material::default() };
+//! let scene = Scene {
+//!     spheres: vec![Sphere { centre: Vec3::ZERO, radius: 1.0, material: 0, blend: 0.0 }],
+//!     materials: vec![red],
+//!     lights: vec![Light { position: Vec3::new(3.0, 4.0, 5.0), colour: Vec3::splat(40.0), kind: LightKind::Point }],
+//!     ..Scene::default()
+//! };
+//! let mut pixels = vec![0; 32 * 18];
+//! Renderer::default().frame(&scene, 0, (32, 18), &Quality::named("high").unwrap(), &mut pixels);
+//! assert!(pixels[9 * 32 + 16] >> 16 > 100, "the ball in the middle is red");
+//! ```
 #![warn(missing_docs)]
 #![forbid(unsafe_code)]
 
+pub mod counters;
+pub mod cull;
 pub mod math;
+pub mod post;
 pub mod quality;
 pub mod render;
+pub mod sample;
+pub mod scene;
+pub mod shade;
+pub mod trace;

@@ -1,23 +1,161 @@
 //! The quality ladder: every knob that trades accuracy for time, as six named presets.
 
+/// What is interpolated between the samples of a cell that needs no further samples.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Rung {
+    /// The colour: cheapest; blurs highlights and textures.
+    Colour,
+    /// The light: textures are evaluated at each pixel on the known shape.
+    Light,
+    /// Only what came by mirrors and glass: surface, texture and direct light are exact at each
+    /// pixel, on the known shape and with the known shadows.
+    Surface,
+}
+
 /// Everything that trades accuracy for time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quality {
-    /// Side of the coarsest sampling block, px.
+    /// Side of the coarsest sampling cell at 1080 lines, px: a power of two from 4 to 32, or 1 to
+    /// trace every pixel. Half of it up to 720 lines, twice over 1440; see [`Quality::cell`].
     pub block: u32,
+    /// Largest error of an interpolated cell at its centre, in display units (1 is white).
+    pub tolerance: f32,
+    /// Side of the smallest cell that may be split no further, px; 1 refines to the pixel.
+    pub smallest: u32,
+    /// Compare with a sample in the middle of each cell before interpolating.
+    pub centre: bool,
+    /// What is interpolated.
+    pub rung: Rung,
+    /// Additional samples of pixels on an edge.
+    pub edge_samples: u32,
+    /// Additional samples of every pixel, on edges or not.
+    pub samples: u32,
+    /// Longest chain of mirrors and refractions.
+    pub depth: u32,
+    /// Rays whose contribution is at most this are not followed, in units of display white.
+    pub cutoff: f32,
+    /// Leave out shapes and occluders that a tile can't meet. Changes the time, never the picture.
+    pub cull: bool,
 }
 
 impl Quality {
     /// The presets from fastest to most exact.
     pub const PRESETS: [(&str, Quality); 6] = [
-        ("draft", Quality { block: 32 }),
-        ("low", Quality { block: 32 }),
-        ("medium", Quality { block: 16 }),
-        ("high", Quality { block: 8 }),
-        ("ultra", Quality { block: 4 }),
-        ("reference", Quality { block: 1 }),
+        (
+            "draft",
+            Quality {
+                block: 32,
+                tolerance: 0.06,
+                smallest: 2,
+                centre: true,
+                rung: Rung::Colour,
+                edge_samples: 0,
+                samples: 0,
+                depth: 2,
+                cutoff: 0.1,
+                cull: true,
+            },
+        ),
+        (
+            "low",
+            Quality {
+                block: 16,
+                tolerance: 0.04,
+                smallest: 1,
+                centre: true,
+                rung: Rung::Colour,
+                edge_samples: 0,
+                samples: 0,
+                depth: 3,
+                cutoff: 0.06,
+                cull: true,
+            },
+        ),
+        (
+            "medium",
+            Quality {
+                block: 16,
+                tolerance: 0.03,
+                smallest: 1,
+                centre: true,
+                rung: Rung::Light,
+                edge_samples: 1,
+                samples: 0,
+                depth: 4,
+                cutoff: 0.04,
+                cull: true,
+            },
+        ),
+        (
+            "high",
+            Quality {
+                block: 16,
+                tolerance: 0.02,
+                smallest: 1,
+                centre: true,
+                rung: Rung::Surface,
+                edge_samples: 3,
+                samples: 0,
+                depth: 5,
+                cutoff: 0.02,
+                cull: true,
+            },
+        ),
+        (
+            "ultra",
+            Quality {
+                block: 8,
+                tolerance: 0.008,
+                smallest: 1,
+                centre: true,
+                rung: Rung::Surface,
+                edge_samples: 7,
+                samples: 0,
+                depth: 7,
+                cutoff: 0.01,
+                cull: true,
+            },
+        ),
+        (
+            "reference",
+            Quality {
+                block: 1,
+                tolerance: 0.0,
+                smallest: 1,
+                centre: true,
+                rung: Rung::Surface,
+                edge_samples: 15,
+                samples: 15,
+                depth: 12,
+                cutoff: 0.001,
+                cull: true,
+            },
+        ),
     ];
 
     /// Index of the preset that `--frame` and the tests use unless told otherwise.
     pub const DEFAULT: usize = 3;
+
+    /// The preset with this name.
+    pub fn named(name: &str) -> Option<Quality> {
+        Self::PRESETS.iter().find(|(n, _)| *n == name).map(|(_, q)| *q)
+    }
+
+    /// The same quality, but every pixel is traced.
+    pub fn every_pixel(self) -> Quality {
+        Quality { block: 1, ..self }
+    }
+
+    /// Side of the coarsest cell for a picture of `height` lines, px.
+    pub fn cell(&self, height: u32) -> u32 {
+        if self.block <= 1 {
+            return 1;
+        }
+        let block = match height {
+            0..=720 => self.block / 2,
+            721..=1440 => self.block,
+            _ => self.block * 2,
+        };
+        block.clamp(4, 32)
+    }
 }

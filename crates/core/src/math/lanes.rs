@@ -85,6 +85,13 @@ pub fn max(a: F, b: F) -> F {
     select(a.simd_gt(b), a, b)
 }
 
+/// |magnitude| with the sign bit of `sign`, also of −0.
+#[inline(always)]
+pub fn copysign(magnitude: F, sign: F) -> F {
+    let bit = splat(-0.0);
+    (magnitude & !bit) | (sign & bit)
+}
+
 /// a·b − c·d, the difference of the exact products rounded twice: to f64, then to f32.
 ///
 /// Products of f32 are exact in f64, so nothing cancels but what cancels in the exact values: the error

@@ -13,6 +13,7 @@
 pub mod hash;
 pub mod lanes;
 pub mod lanes_fn;
+pub mod noise;
 pub mod scalar;
 
 #[cfg(test)]

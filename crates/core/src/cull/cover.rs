@@ -1,0 +1,44 @@
+//! Whether a shape may lie in front of what is known at the corners of a cell.
+//!
+//! The surface between the corners is taken for the front of a convex body: over the cell, its
+//! inverse depth is nowhere less than the interpolation of the corners'. Depths are measured along
+//! the view axis, where the inverse depth of a plane is linear on the screen, so a plane behind
+//! all corners is behind the whole cell. For a ball, the least depth over the cone around the
+//! cell; for other shapes their least depth anywhere.
+
+use crate::render::Stage;
+use crate::trace::Shape;
+use glam::{Vec2, Vec3};
+
+/// Whether shape `index` may cover part of the cell around `centre` with half sides `half` (on
+/// the plane one unit ahead), whose corners, in reading order, are at `depths`.
+pub fn may_cover(stage: &Stage, index: usize, centre: Vec2, half: Vec2, depths: &[f32; 4]) -> bool {
+    let deepest = depths.iter().fold(0.0_f32, |m, &d| m.max(d));
+    match stage.scene.shape(index) {
+        Shape::Sphere(s) => {
+            let c = stage.view.local(s.centre);
+            let reach = half.length();
+            let e = centre.extend(1.0).normalize();
+            let distance = c.length();
+            let across = (c - e * c.dot(e)).length();
+            let (least, most) = (across - distance * reach, across + distance * reach);
+            let along = (distance * distance - most * most).max(0.0).sqrt();
+            let least = least.max(0.0);
+            let front = along - (s.radius * s.radius - least * least).max(0.0).sqrt();
+            let widest = centre.length() + reach;
+            front / (1.0 + widest * widest).sqrt() < deepest * 1.000_01
+        }
+        Shape::Triangle(s) => {
+            let [a, b, c] = s.corners.map(|p| stage.view.local(p));
+            let n = (b - a).cross(c - a);
+            let height = n.dot(a);
+            let signs =
+                [Vec2::new(-1.0, 1.0), Vec2::new(1.0, 1.0), Vec2::new(-1.0, -1.0), Vec2::new(1.0, -1.0)];
+            signs.into_iter().zip(depths).any(|(sign, &depth)| {
+                let d: Vec3 = (centre + sign * half).extend(1.0);
+                n.dot(d) / height * depth > 0.999_99
+            })
+        }
+        _ => true,
+    }
+}

@@ -1,0 +1,224 @@
+//! Bounds of projected shapes: discrete oriented polytopes of eight axes (Klosowski et al. 1998).
+//!
+//! A shape seen from a point projects to a region of the plane one unit ahead. The region's
+//! extents along eight axes, 22.5° apart and turned so that one lies along the shape, bound it
+//! tightly even if it is long and thin. Eight axes are eight lanes. The extents of a ball along
+//! an axis u come from the two tangents through the eye in the plane (u, z):
+//! k = (u z ± r sqrt(u² + z² - r²)) / (z² - r²).
+
+use crate::math::lanes::F;
+use crate::scene::Scene;
+use crate::trace::Shape;
+use glam::{Mat3, Vec2, Vec3};
+
+/// Cosine and sine of k * 22.5°, k = 0..8.
+const COS: [f32; 8] =
+    [1.0, 0.923_879_5, 0.707_106_77, 0.382_683_43, 0.0, -0.382_683_43, -0.707_106_77, -0.923_879_5];
+const SIN: [f32; 8] =
+    [0.0, 0.382_683_43, 0.707_106_77, 0.923_879_5, 1.0, 0.923_879_5, 0.707_106_77, 0.382_683_43];
+
+/// Nearest depth at which points are projected, world units.
+const NEAR: f32 = 1e-3;
+
+/// A point to look from and the directions right, up and forward.
+#[derive(Clone, Copy, Debug)]
+pub struct View {
+    /// The eye, world.
+    pub origin: Vec3,
+    /// Columns right, up, forward: unit vectors in the world.
+    pub world_from_view: Mat3,
+}
+
+impl View {
+    /// Coordinates right, up, forward of a world point.
+    pub fn local(&self, p: Vec3) -> Vec3 {
+        self.world_from_view.transpose() * (p - self.origin)
+    }
+
+    /// A view from `origin` towards `target`.
+    pub fn towards(origin: Vec3, target: Vec3) -> Self {
+        let forward = (target - origin).normalize_or(Vec3::NEG_Y);
+        let (right, up) = forward.any_orthonormal_pair();
+        Self { origin, world_from_view: Mat3::from_cols(right, up, forward) }
+    }
+}
+
+/// Extents of a projected shape along eight axes, and the depths it lies between.
+#[derive(Clone, Copy, Debug)]
+pub struct Dop {
+    axis_x: F,
+    axis_y: F,
+    lo: F,
+    hi: F,
+    /// Least depth (distance along forward) of the shape, world units.
+    pub near: f32,
+    /// The shape can't be bounded: it is infinite, or reaches behind the eye.
+    pub unbounded: bool,
+}
+
+/// Extents of the ball at `c` (view coordinates) along axes; `c.z > r`.
+fn ball_extents(x: F, y: F, c: Vec3, r: f32) -> (F, F) {
+    let r = r + 2e-6 * (r + c.abs().max_element());
+    let u = x * F::splat(c.x) + y * F::splat(c.y);
+    let (z, r2) = (F::splat(c.z), F::splat(r * r));
+    let root = F::splat(r) * (u * u + z * z - r2).fast_max(F::ZERO).sqrt();
+    let scale = F::ONE / (z * z - r2);
+    ((u * z - root) * scale, (u * z + root) * scale)
+}
+
+impl Dop {
+    const EVERYWHERE: Dop = Dop {
+        axis_x: F::ZERO,
+        axis_y: F::ZERO,
+        lo: F::splat(f32::NEG_INFINITY),
+        hi: F::splat(f32::INFINITY),
+        near: 0.0,
+        unbounded: true,
+    };
+    const NOWHERE: Dop = Dop {
+        lo: F::splat(f32::INFINITY),
+        hi: F::splat(f32::NEG_INFINITY),
+        near: f32::INFINITY,
+        unbounded: false,
+        ..Dop::EVERYWHERE
+    };
+
+    fn along(direction: Vec2) -> Dop {
+        let u = direction.normalize_or(Vec2::X);
+        let (cos, sin) = (F::new(COS), F::new(SIN));
+        let (x, y) = (F::splat(u.x), F::splat(u.y));
+        Dop { axis_x: cos * x - sin * y, axis_y: sin * x + cos * y, ..Dop::NOWHERE }
+    }
+
+    /// Bound of the ball at `c`, view coordinates.
+    fn ball(c: Vec3, r: f32) -> Dop {
+        if c.z + r < 0.0 {
+            return Dop::NOWHERE;
+        }
+        if c.z < r * 1.001 + NEAR {
+            return Dop::EVERYWHERE;
+        }
+        let dop = Dop::along(Vec2::X);
+        let (lo, hi) = ball_extents(dop.axis_x, dop.axis_y, c, r);
+        Dop { lo, hi, near: c.z - r, unbounded: false, ..dop }
+    }
+
+    /// Bound of the convex hull of points (view coordinates), one axis along `direction`.
+    fn hull(direction: Vec2, points: impl Iterator<Item = Vec3>) -> Dop {
+        let mut dop = Dop::along(direction);
+        for p in points {
+            if p.z < NEAR {
+                return Dop::EVERYWHERE;
+            }
+            let e = (dop.axis_x * F::splat(p.x) + dop.axis_y * F::splat(p.y)) * F::splat(1.0 / p.z);
+            let slack = e.abs() * F::splat(2e-6) + F::splat(1e-6);
+            dop.lo = dop.lo.fast_min(e - slack);
+            dop.hi = dop.hi.fast_max(e + slack);
+            dop.near = dop.near.min(p.z);
+        }
+        dop
+    }
+
+    /// Bound of the hull of two discs across `axis` (world) of radii `r` around `a` and `b`.
+    fn discs(view: &View, axis: Vec3, (a, ra): (Vec3, f32), (b, rb): (Vec3, f32)) -> Dop {
+        let (u, v) = axis.any_orthonormal_pair();
+        // A regular polygon of sixteen corners around a circle: 1 / cos(pi/16).
+        let around = 1.019_591_2;
+        let corner = move |k: usize| {
+            let (c, s) = (COS[k & 7], SIN[k & 7]);
+            (u * c + v * s) * if k < 8 { around } else { -around }
+        };
+        let flat = |p: Vec3| {
+            let p = view.local(p);
+            Vec2::new(p.x, p.y) / p.z.max(NEAR)
+        };
+        let points = (0..32).map(|k| {
+            let (centre, r) = if k < 16 { (a, ra) } else { (b, rb) };
+            view.local(centre + corner(k & 15) * r)
+        });
+        Dop::hull(flat(b) - flat(a), points)
+    }
+
+    /// Bound of an infinite bar: its part well in front of the eye, or everything if it passes
+    /// close to the eye.
+    fn bar(view: &View, base: Vec3, axis: Vec3, r: f32) -> Dop {
+        let from_axis = (view.origin - base).cross(axis).length();
+        if from_axis < 8.0 * r + 8.0 * NEAR {
+            return Dop::EVERYWHERE;
+        }
+        let middle = base + axis * (view.origin - base).dot(axis);
+        let far = 1e4 * from_axis;
+        let (a, b) = (view.local(middle - axis * far), view.local(middle + axis * far));
+        // Clip the axis where it is 3 r (and a little) before the eye.
+        let least = 3.0 * r + from_axis * 0.02;
+        let (mut s, mut e) = (0.0_f32, 1.0_f32);
+        let dz = b.z - a.z;
+        if a.z < least && b.z < least {
+            return Dop::NOWHERE;
+        }
+        if a.z < least {
+            s = (least - a.z) / dz;
+        }
+        if b.z < least {
+            e = (least - a.z) / dz;
+        }
+        let at = |x: f32| middle + axis * (far * (2.0 * x - 1.0));
+        Dop::discs(view, axis, (at(s), r), (at(e), r))
+    }
+
+    /// Bound of a shape as seen in `view`.
+    pub fn of(view: &View, shape: Shape) -> Dop {
+        match shape {
+            Shape::Sphere(s) => Dop::ball(view.local(s.centre), s.radius),
+            Shape::Plane(_) => Dop::EVERYWHERE,
+            Shape::Cylinder(s) if s.length < f32::INFINITY => {
+                let end = s.base + s.axis * s.length;
+                Dop::discs(view, s.axis, (s.base, s.radius), (end, s.radius))
+            }
+            Shape::Cylinder(s) => Dop::bar(view, s.base, s.axis, s.radius),
+            Shape::Cone(s) if s.range[1] < f32::INFINITY => {
+                let end = |h: f32| (s.apex + s.axis * h, s.slope * h);
+                Dop::discs(view, s.axis, end(s.range[0]), end(s.range[1]))
+            }
+            Shape::Cone(_) => Dop::EVERYWHERE,
+            Shape::Triangle(s) => {
+                let [a, b, c] = s.corners.map(|p| view.local(p));
+                let edge = |p: Vec3, q: Vec3| (q / q.z.max(NEAR) - p / p.z.max(NEAR)).truncate();
+                let edges = [edge(a, b), edge(b, c), edge(c, a)];
+                let longest = edges
+                    .into_iter()
+                    .fold(Vec2::ZERO, |m, e| if e.length_squared() > m.length_squared() { e } else { m });
+                Dop::hull(longest, [a, b, c].into_iter())
+            }
+        }
+    }
+
+    /// Whether the shape may appear in the rectangle around `centre` with these half sides, on
+    /// the plane one unit ahead.
+    pub fn meets_rectangle(&self, centre: Vec2, half: Vec2) -> bool {
+        let e = self.axis_x * F::splat(centre.x) + self.axis_y * F::splat(centre.y);
+        let h = self.axis_x.abs() * F::splat(half.x) + self.axis_y.abs() * F::splat(half.y);
+        ((e + h).simd_ge(self.lo) & (e - h).simd_le(self.hi)).all()
+    }
+
+    /// Whether the shape may hide a ball at `c` (view coordinates), or part of it, from the eye.
+    pub fn meets_ball(&self, c: Vec3, r: f32) -> bool {
+        if self.unbounded {
+            return true;
+        }
+        if c.length() + r < self.near {
+            return false;
+        }
+        if c.z < r * 1.001 + NEAR {
+            // The ball reaches the eye's plane: only what is all behind the eye is surely apart.
+            return c.z + r >= 0.0 && self.near < f32::INFINITY;
+        }
+        let (lo, hi) = ball_extents(self.axis_x, self.axis_y, c, r);
+        (lo.simd_le(self.hi) & hi.simd_ge(self.lo)).all()
+    }
+}
+
+/// Bounds of all shapes of a scene in a view.
+pub fn dops(scene: &Scene, view: &View) -> Vec<Dop> {
+    (0..scene.shape_count()).map(|i| Dop::of(view, scene.shape(i))).collect()
+}

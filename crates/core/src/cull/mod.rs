@@ -1,0 +1,9 @@
+//! What can't matter is left out: bounds of shapes as seen from an eye or a lamp.
+
+mod cover;
+mod dop;
+mod shaft;
+
+pub use cover::may_cover;
+pub use dop::{Dop, View, dops};
+pub use shaft::{Shaft, occluders, shafts};

@@ -1,0 +1,86 @@
+//! The last pass: display curve, vignette, grain, sampling overlay, 0RGB.
+//!
+//! Vignette: 1 - V r^2.4 with r² = (x² + y²) / 2, x and y from -1 to 1. Grain: a hash of pixel and
+//! frame, which also hides banding. Pixels are quantised by floor(255 v + 1/2).
+
+use crate::math::hash::{hash_x8, unit_x8};
+use crate::math::lanes::{F, LANE_INDEX, U, V3};
+use crate::math::lanes_fn::pow;
+use crate::render::Stage;
+use crate::sample::{Kind, TILE, Tile};
+use glam::Vec3;
+use rayon::prelude::*;
+
+/// Rows that are finished as one piece of work.
+const ROWS: usize = 8;
+
+/// Writes the tiles of frame `n` as 0RGB rows into `pixels`.
+pub fn finish(stage: &Stage, tiles: &[Tile], n: u64, pixels: &mut [u32]) {
+    let width = stage.width as usize;
+    let across = width.div_ceil(TILE);
+    pixels.par_chunks_mut(width * ROWS).enumerate().for_each(|(strip, rows)| {
+        for (y, row) in rows.chunks_mut(width).enumerate() {
+            let y = strip * ROWS + y;
+            let tiles = &tiles[y / TILE * across..];
+            for (tile, part) in tiles.iter().zip(row.chunks_mut(TILE)).enumerate() {
+                let (tile, part, x) = (part.0, part.1, tile * TILE);
+                finish_row(stage, tile, (x, y), n, part);
+            }
+        }
+    });
+}
+
+/// Finishes the row `y` of the picture within one tile, from pixel `x` on.
+fn finish_row(stage: &Stage, tile: &Tile, (x, y): (usize, usize), n: u64, row: &mut [u32]) {
+    let grade = &stage.scene.grade;
+    let (w, h) = (stage.width as f32, stage.height as f32);
+    let fy = ((y as f32 + 0.5) * 2.0 - h) / h;
+    let wipe = (stage.scene.overlay * w) as usize;
+    for (base, out) in row.chunks_mut(8).enumerate() {
+        let at = (y % TILE) * TILE + base * 8;
+        let lanes = |plane: &[f32]| F::new(plane[at..at + 8].try_into().unwrap_or_default());
+        let [r, g, b] = &tile.rgb;
+        let mut colour = stage.display.map8(V3 { x: lanes(r), y: lanes(g), z: lanes(b) });
+
+        if x + base * 8 < wipe {
+            for lane in 0..8 {
+                let painted = overlay(tile, (base * 8 + lane, y % TILE), colour.lane(lane));
+                colour.set_lane(lane, painted);
+            }
+        }
+        let index = U::splat((x + base * 8) as u32) + LANE_INDEX;
+        let fx = F::new(std::array::from_fn(|i| ((x + base * 8 + i) as f32 + 0.5) * (2.0 / w) - 1.0));
+        if grade.vignette > 0.0 {
+            let r2 = (fx * fx + F::splat(fy * fy)) * F::splat(0.5);
+            colour = colour * (F::ONE - F::splat(grade.vignette) * pow(r2, F::splat(1.2)));
+        }
+        let pixel = index + U::splat(y as u32 * stage.width);
+        let noise = unit_x8(hash_x8(pixel, n as u32, 0)) - F::splat(0.5);
+        let noise = noise * F::splat(2.0 * grade.grain);
+        let byte = |c: F| {
+            let c = (c + noise).fast_max(F::ZERO).fast_min(F::ONE);
+            (c * F::splat(255.0) + F::splat(0.5)).trunc_int().to_array()
+        };
+        let (r, g, b) = (byte(colour.x), byte(colour.y), byte(colour.z));
+        for (lane, p) in out.iter_mut().enumerate() {
+            *p = (r[lane] as u32) << 16 | (g[lane] as u32) << 8 | b[lane] as u32;
+        }
+    }
+}
+
+/// Colours of filled and interpolated pixels: #E0342B and #2D6BFF.
+const FILLED: Vec3 = Vec3::new(0.878, 0.204, 0.169);
+const INTERPOLATED: Vec3 = Vec3::new(0.176, 0.42, 1.0);
+
+/// Shows how a pixel was got: 45 % red or blue, darker at the upper and left edge of large cells.
+fn overlay(tile: &Tile, (x, y): (usize, usize), colour: Vec3) -> Vec3 {
+    let record = tile.record[y * TILE + x];
+    let paint = match record.kind() {
+        Kind::Filled => FILLED,
+        Kind::Interpolated => INTERPOLATED,
+        Kind::Traced | Kind::Smoothed => return colour,
+    };
+    let size = record.size();
+    let rim = size >= 8 && (x % size == 0 || y % size == 0);
+    (colour + (paint - colour) * 0.45) * if rim { 0.7 } else { 1.0 }
+}

@@ -1,0 +1,136 @@
+//! A scene made ready for one frame: what every ray asks for, computed once.
+
+use crate::cull::{Dop, Shaft, View, dops, shafts};
+use crate::math::lanes::{F, V3};
+use crate::post::Display;
+use crate::quality::{Quality, Rung};
+use crate::scene::Scene;
+use crate::shade::{Lamp, MAX_LAMPS, lamps};
+use crate::trace::Shape;
+use glam::{Vec2, Vec3};
+
+/// A scene, a quality and a size, with all that follows from them.
+pub struct Stage<'a> {
+    /// What is drawn.
+    pub scene: &'a Scene,
+    /// How well.
+    pub quality: Quality,
+    /// Width of the picture, px.
+    pub width: u32,
+    /// Height of the picture, px.
+    pub height: u32,
+    /// The eye.
+    pub view: View,
+    /// Width of a pixel on the plane one unit ahead of the eye.
+    pub pixel: f32,
+    /// Sources of direct light.
+    pub lamps: Vec<Lamp>,
+    /// Per shape: a power of two for a transparent one, 0 for an opaque one.
+    pub bits: Vec<f32>,
+    /// Factor on the light that crosses each transparent shape, in the order of their bits.
+    pub tints: Vec<Vec3>,
+    /// Bounds of the shapes on the screen.
+    pub dops: Vec<Dop>,
+    /// Bounds of the shapes as the lamps that cast shadows see them.
+    pub shafts: Vec<Vec<Shaft>>,
+    /// From linear light to display values.
+    pub display: Display,
+}
+
+/// Transparent shapes that can colour shadows: their bits must stay exact in an f32.
+const MAX_TRANSPARENT: usize = 23;
+
+impl<'a> Stage<'a> {
+    /// Prepares a frame of `width` by `height` px. A transparent shape beyond the 23rd casts no
+    /// shadow; a lamp beyond the eighth casts none either.
+    pub fn new(scene: &'a Scene, quality: &Quality, width: u32, height: u32) -> Self {
+        let view = View { origin: scene.camera.position, world_from_view: scene.camera.world_from_camera() };
+        let mut bits = Vec::new();
+        let mut tints = Vec::new();
+        for i in 0..scene.shape_count() {
+            let material = &scene.materials[scene.shape(i).material()];
+            let glass = material.is_transparent();
+            let bit = if glass { (1_u32 << tints.len().min(MAX_TRANSPARENT)) as f32 } else { 0.0 };
+            bits.push(bit);
+            if glass && tints.len() < MAX_TRANSPARENT {
+                tints.push(material.shadow);
+            }
+        }
+        let lamps = lamps(scene);
+        let shafts = lamps.iter().take(MAX_LAMPS).map(|lamp| shafts(scene, lamp)).collect();
+        Self {
+            scene,
+            quality: *quality,
+            width,
+            height,
+            pixel: 2.0 * scene.camera.half_width() / width as f32,
+            dops: dops(scene, &view),
+            view,
+            lamps,
+            bits,
+            tints,
+            shafts,
+            display: Display::new(&scene.grade),
+        }
+    }
+
+    /// Unit vector along the view axis.
+    pub fn forward(&self) -> Vec3 {
+        self.view.world_from_view.z_axis
+    }
+
+    /// The point on the plane one unit ahead (right, up) that shows at a position in the picture,
+    /// px right and down from its corner.
+    pub fn on_screen(&self, x: f32, y: f32) -> Vec2 {
+        let Vec2 { x: cx, y: cy } = Vec2::new(self.width as f32, self.height as f32) * 0.5;
+        Vec2::new((x - cx) * self.pixel, (cy - y) * self.pixel)
+    }
+
+    /// Unit direction of the ray through a position in the picture.
+    pub fn direction(&self, x: f32, y: f32) -> Vec3 {
+        self.directions(F::splat(x), F::splat(y)).lane(0)
+    }
+
+    /// [`Stage::direction`] for eight positions.
+    pub fn directions(&self, x: F, y: F) -> V3 {
+        let [right, up, forward] = self.view.world_from_view.to_cols_array_2d().map(|c| V3::splat(c.into()));
+        let pixel = F::splat(self.pixel);
+        let x = (x - F::splat(self.width as f32 * 0.5)) * pixel;
+        let y = (F::splat(self.height as f32 * 0.5) - y) * pixel;
+        (right * x + up * y + forward).normalize()
+    }
+
+    /// Whether direct light is computed at each pixel, so that only the rest is interpolated.
+    pub fn exact_surface(&self) -> bool {
+        self.quality.rung == Rung::Surface
+    }
+
+    /// Mask of the shapes that may show in the square of `side` px at `corner`, see
+    /// [`crate::trace::nearest`].
+    pub fn candidates(&self, corner: (usize, usize), side: usize) -> u64 {
+        if !self.quality.cull {
+            return u64::MAX;
+        }
+        // A little over the last sample, which lies on the next tile's first pixel.
+        let half = side as f32 * 0.5 + 1.0;
+        let middle = self.on_screen(corner.0 as f32 + half - 1.0, corner.1 as f32 + half - 1.0);
+        let half = Vec2::splat(half * self.pixel);
+        let mut mask = 0;
+        for (i, dop) in self.dops.iter().enumerate() {
+            let seen = match self.scene.shape(i) {
+                Shape::Plane(p) => {
+                    let n = self.view.world_from_view.transpose() * p.normal;
+                    let side = p.normal.dot(p.point - self.view.origin);
+                    let reach = n.truncate().abs().dot(half) + 1e-5;
+                    let middle = n.truncate().dot(middle) + n.z;
+                    side == 0.0 || middle * side.signum() + reach >= 0.0
+                }
+                _ => dop.meets_rectangle(middle, half),
+            };
+            if seen {
+                mask |= 1 << (i & 63);
+            }
+        }
+        mask
+    }
+}

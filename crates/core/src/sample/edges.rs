@@ -1,0 +1,81 @@
+//! Additional samples where the tiles found edges: anti-aliasing where it is needed, nowhere else.
+//!
+//! Sample i of a pixel lies at its centre plus the i-th point of the R2 sequence (Roberts 2018),
+//! whose first point is the centre itself. Colours are averaged as c / (1 + max(c)), so that a
+//! bright light behind an edge doesn't swallow the edge (Karis 2014); the same for all presets.
+
+use super::tile::{Borders, Kind, Record, TILE, Tile};
+use super::wave::{Position, Scratch, trace};
+use crate::counters::Counter;
+use crate::render::Stage;
+use glam::Vec3;
+
+/// Offsets of the R2 sequence from 0: multiples of the inverse powers of the plastic number.
+const STEP: [f32; 2] = [0.754_877_7, 0.569_840_3];
+
+/// Samples that are traced at once: keeps the lists in the cache.
+const BATCH: usize = 1024;
+
+/// Position of sample `i` of the pixel at (x, y).
+fn place(x: usize, y: usize, i: u32) -> Position {
+    let offset = |step: f32| {
+        let v = 0.5 + i as f32 * step;
+        v - v.floor()
+    };
+    (x as f32 + offset(STEP[0]), y as f32 + offset(STEP[1]))
+}
+
+fn compress(c: Vec3) -> Vec3 {
+    c / (1.0 + c.max_element())
+}
+
+fn expand(c: Vec3) -> Vec3 {
+    c / (1.0 - c.max_element()).max(1e-4)
+}
+
+/// Takes more samples of the tile's edge pixels: its own and those its neighbours to the left,
+/// above, and left above have found.
+pub fn smooth_edges(
+    stage: &Stage,
+    scratch: &mut Scratch,
+    corner: (usize, usize),
+    tile: &mut Tile,
+    [left, above, diagonal]: [Borders; 3],
+) {
+    let all = stage.quality.samples;
+    let edge = stage.quality.edge_samples.max(all);
+    if edge == 0 {
+        return;
+    }
+    let width = TILE.min(stage.width as usize - corner.0);
+    let height = TILE.min(stage.height as usize - corner.1);
+    let mut pixels: Vec<(usize, usize, u32)> = Vec::new();
+    for y in 0..height {
+        let mut word = tile.edges[y] | (left.right >> y & 1);
+        if y == 0 {
+            word |= above.bottom | diagonal.corner as u64;
+        }
+        pixels.extend((0..width).filter_map(|x| {
+            let count = if word >> x & 1 == 1 { edge } else { all };
+            (count > 0).then_some((x, y, count))
+        }));
+    }
+    let candidates = stage.candidates(corner, TILE);
+    let mut positions = Vec::new();
+    for batch in pixels.chunks((BATCH / edge as usize).max(1)) {
+        positions.clear();
+        for &(x, y, count) in batch {
+            positions.extend((1..=count).map(|i| place(corner.0 + x, corner.1 + y, i)));
+        }
+        scratch.samples.clear();
+        trace(stage, scratch, &positions, candidates);
+        scratch.counters.add(Counter::EdgeSamples, positions.len() as u32);
+        let mut samples = scratch.samples.iter();
+        for &(x, y, count) in batch {
+            let more = samples.by_ref().take(count as usize);
+            let sum = more.fold(compress(tile.get(x, y)), |sum, s| sum + compress(s.colour));
+            let colour = expand(sum / (count + 1) as f32);
+            tile.set(x, y, colour, Record::new(Kind::Smoothed, 1));
+        }
+    }
+}

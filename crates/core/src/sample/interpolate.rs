@@ -1,0 +1,155 @@
+//! Pixels between the samples of a cell, eight at a time, on one of three rungs of accuracy.
+//!
+//! Between corners a, b, c, d the value is bilinear, in the form p + (q - p) x that keeps equal
+//! values equal, plus a bump 16 x (1-x) y (1-y) (centre - mean) through the centre sample, which
+//! vanishes on the cell's border.
+
+use super::refine::{Cell, Corners};
+use super::tile::{Kind, Record, TILE, Tile};
+use super::wave::Sample;
+use crate::counters::{Counter, Counters};
+use crate::math::lanes::{F, V3};
+use crate::quality::Rung;
+use crate::render::Stage;
+use crate::scene::Channel;
+use crate::shade::{self, Visibility};
+use crate::trace::{NONE, Rays8, surface};
+use glam::Vec3;
+
+/// Half an output step: colours closer than this display the same.
+const SAME: f32 = 0.5 / 255.0;
+
+/// A value over a cell, as bilinear coefficients.
+struct Patch {
+    a: V3,
+    b: V3,
+    c: V3,
+    d: V3,
+    bump: V3,
+}
+
+impl Patch {
+    fn of(known: &Corners, value: impl Fn(&Sample) -> Vec3) -> Patch {
+        let [a, b, c, d] = known.corners.map(&value);
+        let mean = (a + b + c + d) * 0.25;
+        let bump = known.centre.map_or(Vec3::ZERO, |s| (value(s) - mean) * 16.0);
+        Patch { a: V3::splat(a), b: V3::splat(b), c: V3::splat(c), d: V3::splat(d), bump: V3::splat(bump) }
+    }
+
+    fn at(&self, x: F, y: F) -> V3 {
+        let upper = self.a + (self.b - self.a) * x;
+        let lower = self.c + (self.d - self.c) * x;
+        let bump = x * (F::ONE - x) * y * (F::ONE - y);
+        upper + (lower - upper) * y + self.bump * bump
+    }
+}
+
+/// Fills all pixels of a cell from its samples.
+pub(super) fn fill(
+    stage: &Stage,
+    corner: (usize, usize),
+    cell: Cell,
+    known: &Corners,
+    tile: &mut Tile,
+    counters: &mut Counters,
+) {
+    let first = known.corners[0];
+    let same = |s: &&Sample| (s.display - first.display).abs().max_element() <= SAME;
+    let equal = known.corners[1..].iter().chain(&known.centre).all(same);
+    let kind = if equal { Kind::Filled } else { Kind::Interpolated };
+    let counter = if equal { Counter::Filled } else { Counter::Interpolated };
+    let count = cell.size * cell.size;
+    counters.add(counter, count as u32);
+    let record = Record::new(kind, cell.size);
+
+    let textured = first.id >= 0.0 && {
+        let shape = stage.scene.shape(first.id as usize >> 2);
+        stage.scene.materials[shape.material()].grain > 0.0
+    };
+    let rung = if equal && !textured { Rung::Colour } else { stage.quality.rung };
+    let scale = F::splat(1.0 / cell.size as f32);
+    let shift = cell.size.trailing_zeros();
+    let patch = match rung {
+        Rung::Colour => Patch::of(known, |s| s.colour),
+        Rung::Light if textured => Patch::of(known, |s| s.colour - s.irradiance * s.albedo),
+        Rung::Light => Patch::of(known, |s| s.colour),
+        Rung::Surface => Patch::of(known, |s| s.indirect),
+    };
+    let light = Patch::of(known, |s| s.irradiance);
+    for base in (0..count).step_by(8) {
+        let place = |lane: usize| {
+            let i = base + lane;
+            (i & (cell.size - 1), i >> shift)
+        };
+        let x = F::new(std::array::from_fn(|i| place(i).0 as f32));
+        let y = F::new(std::array::from_fn(|i| place(i).1 as f32));
+        let between = patch.at(x * scale, y * scale);
+        let px = x + F::splat((corner.0 + cell.x) as f32 + 0.5);
+        let py = y + F::splat((corner.1 + cell.y) as f32 + 0.5);
+        let colour = match rung {
+            Rung::Surface => between + known_surface(stage, first, px, py, counters),
+            Rung::Light if textured => {
+                between + light.at(x * scale, y * scale) * albedo(stage, first, px, py, counters)
+            }
+            _ => between,
+        };
+        if cell.size >= 8 {
+            let (x, y) = place(0);
+            let at = (cell.y + y) * TILE + cell.x + x;
+            for (plane, c) in tile.rgb.iter_mut().zip([colour.x, colour.y, colour.z]) {
+                plane[at..at + 8].copy_from_slice(c.as_array());
+            }
+            tile.record[at..at + 8].fill(record);
+        } else {
+            for lane in 0..count.min(8) {
+                let (x, y) = place(lane);
+                tile.set(cell.x + x, cell.y + y, colour.lane(lane), record);
+            }
+        }
+    }
+}
+
+/// Rays through pixels, and where they meet the shape of `first` (0 where they don't).
+fn meet(stage: &Stage, first: &Sample, px: F, py: F) -> (Rays8, F) {
+    let rays = Rays8 { origin: V3::splat(stage.scene.camera.position), direction: stage.directions(px, py) };
+    if first.id < 0.0 {
+        return (rays, F::splat(f32::INFINITY));
+    }
+    let (t, _) = stage.scene.shape(first.id as usize >> 2).span(&rays).first();
+    (rays, t.simd_gt(F::ZERO).select(t, F::splat(first.depth)))
+}
+
+/// Albedo of the known shape at pixels.
+fn albedo(stage: &Stage, first: &Sample, px: F, py: F, counters: &mut Counters) -> V3 {
+    counters.add(Counter::KnownSurfaces, 8);
+    let (rays, t) = meet(stage, first, px, py);
+    let s = surface(stage.scene, &rays, t, F::splat(first.id), F::splat(stage.pixel));
+    s.colour(Channel::Colour)
+}
+
+/// Light from the known shape, or background, at pixels but for mirrors and glass: the visibility
+/// of the lamps is that of the sample `first`.
+fn known_surface(stage: &Stage, first: &Sample, px: F, py: F, counters: &mut Counters) -> V3 {
+    counters.add(Counter::KnownSurfaces, 8);
+    let (rays, t) = meet(stage, first, px, py);
+    let spread = F::splat(stage.pixel);
+    let light = if first.id <= NONE {
+        shade::background(&stage.scene.background, &rays, spread).0
+    } else {
+        let s = surface(stage.scene, &rays, t, F::splat(first.id), spread);
+        let mut codes = first.codes.map(F::splat);
+        let view = -rays.direction;
+        let all = F::ZERO.simd_gt(F::splat(-1.0));
+        let lit = shade::direct(stage, &s, view, all, Visibility::Known, &mut codes, counters);
+        let local = shade::local(stage, &s, &shade::split(&s, rays.direction), lit);
+        local.irradiance * s.colour(Channel::Colour) + local.rest
+    };
+    match &stage.scene.fog {
+        Some(fog) => {
+            counters.add(Counter::FogSegments, 8);
+            let (through, scattered) = shade::fog(fog, &rays, t);
+            light * through + scattered
+        }
+        None => light,
+    }
+}

@@ -1,0 +1,16 @@
+//! Where to trace: adaptive subsampling of a frame, tile by tile.
+//!
+//! Each tile is refined on its own from finished samples only, level by level over work lists, so
+//! the result depends neither on threads nor on order. Pixels on edges are found by all tiles
+//! first and get their additional samples in a second pass.
+
+mod edges;
+mod interpolate;
+mod refine;
+mod tile;
+mod wave;
+
+pub use edges::smooth_edges;
+pub use refine::refine;
+pub use tile::{Borders, Kind, Record, TILE, Tile};
+pub use wave::{Sample, Scratch};

@@ -1,0 +1,234 @@
+//! Refinement of one tile: cells are split until what lies between their samples is known.
+//!
+//! A cell is interpolated if its corners and its centre have equal signatures, nothing else may
+//! appear in it, and the bilinear value at the centre is within tolerance in display units; else
+//! it is split in four, down to the pixel. Samples lie on pixels, so children share them.
+//! Whitted 1980's adaptive supersampling turned round; the centre sample is what makes it exact.
+//!
+//! *Nothing else may appear*: a shape whose projected bound meets the cell and that isn't behind
+//! the cell's own surface may lie between the corners, however small it is. So may the shadow of
+//! a shape whose bound, seen from a lamp, meets the cell's patch of surface, when all corners are
+//! lit. A convex front is nowhere deeper than its deepest corner, seen along the view axis.
+
+use super::interpolate::fill;
+use super::tile::{Borders, Kind, Record, TILE, Tile};
+use super::wave::{Position, Sample, Scratch, trace};
+use crate::counters::Counter;
+use crate::cull::{may_cover, occluders};
+use crate::render::Stage;
+use crate::shade::MAX_LAMPS;
+use crate::trace::{BLOCKED, Shape};
+use glam::{Vec2, Vec3};
+
+/// Side of the grid of a tile's samples: one more than its pixels.
+const GRID: usize = TILE + 1;
+
+/// A square between samples; `x`, `y` from the tile's corner, px.
+#[derive(Clone, Copy)]
+pub(super) struct Cell {
+    pub x: usize,
+    pub y: usize,
+    pub size: usize,
+}
+
+/// The samples of a cell: corners in reading order, and the centre.
+pub(super) struct Corners<'a> {
+    pub corners: [&'a Sample; 4],
+    pub centre: Option<&'a Sample>,
+}
+
+impl Cell {
+    fn points(self) -> [(usize, usize); 4] {
+        let Cell { x, y, size } = self;
+        [(x, y), (x + size, y), (x, y + size), (x + size, y + size)]
+    }
+
+    /// The sample in the middle, which is a corner of the children.
+    fn middle(self, stage: &Stage) -> Option<(usize, usize)> {
+        let half = self.size / 2;
+        (half > 0 && stage.quality.centre).then_some((self.x + half, self.y + half))
+    }
+
+    fn children(self) -> [Cell; 4] {
+        let size = self.size / 2;
+        let Cell { x, y, .. } = self;
+        [(x, y), (x + size, y), (x, y + size), (x + size, y + size)].map(|(x, y)| Cell { x, y, size })
+    }
+}
+
+/// What a tile knows of the shapes that may show, or cast shadows, in it.
+struct Surroundings {
+    /// Shapes that may be seen.
+    shapes: u64,
+    /// Shapes that may cast a shadow from each lamp.
+    shadows: [u64; MAX_LAMPS],
+}
+
+/// Samples the tile whose upper left pixel is `corner`, and fills its pixels.
+pub fn refine(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize), tile: &mut Tile) -> Borders {
+    let width = TILE.min(stage.width as usize - corner.0);
+    let height = TILE.min(stage.height as usize - corner.1);
+    let cell = stage.quality.cell(stage.height) as usize;
+    let mut around = Surroundings { shapes: stage.candidates(corner, TILE), shadows: [u64::MAX; MAX_LAMPS] };
+    scratch.samples.clear();
+    scratch.grid.clear();
+    scratch.grid.resize(GRID * GRID, u32::MAX);
+
+    let mut cells = Vec::new();
+    for y in (0..height).step_by(cell) {
+        cells.extend((0..width).step_by(cell).map(|x| Cell { x, y, size: cell }));
+    }
+    let mut edges = [[false; GRID]; GRID];
+    let mut first = true;
+    while !cells.is_empty() {
+        sample(stage, scratch, &cells, corner, around.shapes);
+        if first {
+            around.shadows = shadow_casters(stage, &scratch.samples);
+            first = false;
+        }
+        let mut next = Vec::new();
+        for &cell in &cells {
+            let at = |(x, y): (usize, usize)| &scratch.samples[scratch.grid[y * GRID + x] as usize];
+            let known = Corners { corners: cell.points().map(at), centre: cell.middle(stage).map(at) };
+            let same = known.alike();
+            if cell.size == 1 {
+                tile.set(cell.x, cell.y, known.corners[0].colour, Record::new(Kind::Traced, 1));
+                scratch.counters.add(Counter::Traced, 1);
+                if !same {
+                    for (x, y) in cell.points() {
+                        edges[y][x] = true;
+                    }
+                }
+            } else if cell.size <= stage.quality.smallest as usize
+                || (same && known.smooth(stage) && !around.may_hide_something(stage, corner, cell, &known))
+            {
+                fill(stage, corner, cell, &known, tile, &mut scratch.counters);
+            } else {
+                next.extend(cell.children().into_iter().filter(|c| c.x < width && c.y < height));
+            }
+        }
+        cells = next;
+    }
+    collect(&edges, tile)
+}
+
+/// Traces the samples of `cells` that are still missing, in the cells' order.
+fn sample(stage: &Stage, scratch: &mut Scratch, cells: &[Cell], corner: (usize, usize), shapes: u64) {
+    let mut missing: Vec<Position> = Vec::new();
+    let before = scratch.samples.len();
+    for cell in cells {
+        for (x, y) in cell.points().into_iter().chain(cell.middle(stage)) {
+            let slot = &mut scratch.grid[y * GRID + x];
+            if *slot == u32::MAX {
+                *slot = (before + missing.len()) as u32;
+                missing.push(((corner.0 + x) as f32 + 0.5, (corner.1 + y) as f32 + 0.5));
+            }
+        }
+    }
+    trace(stage, scratch, &missing, shapes);
+}
+
+/// Shapes that may cast a shadow on any surface between `samples`, per lamp.
+fn shadow_casters(stage: &Stage, samples: &[Sample]) -> [u64; MAX_LAMPS] {
+    let mut masks = [0; MAX_LAMPS];
+    let hits = || samples.iter().filter(|s| s.id >= 0.0).map(|s| s.point);
+    let Some(some) = hits().next() else { return masks };
+    let (lo, hi) = hits().fold((some, some), |(lo, hi), p| (lo.min(p), hi.max(p)));
+    for (mask, shafts) in masks.iter_mut().zip(&stage.shafts) {
+        *mask = occluders(stage.scene, shafts, None, (lo + hi) * 0.5, (hi - lo).length() * 0.5);
+    }
+    masks
+}
+
+/// Marks the edge pixels in the tile and returns those of its neighbours.
+fn collect(edges: &[[bool; GRID]; GRID], tile: &mut Tile) -> Borders {
+    let mut borders = Borders { corner: edges[TILE][TILE], ..Borders::default() };
+    for i in 0..TILE {
+        tile.edges[i] = (0..TILE).fold(0, |word, x| word | (edges[i][x] as u64) << x);
+        borders.right |= (edges[i][TILE] as u64) << i;
+        borders.bottom |= (edges[TILE][i] as u64) << i;
+    }
+    borders
+}
+
+impl Corners<'_> {
+    /// Whether all samples saw the same things, from about the same side.
+    fn alike(&self) -> bool {
+        let first = self.corners[0];
+        let like =
+            |s: &&Sample| s.signature == first.signature && (s.id < 0.0 || s.normal.dot(first.normal) > 0.5);
+        self.corners[1..].iter().chain(&self.centre).all(like)
+    }
+
+    /// Whether the bilinear value at the centre is within tolerance of the true one.
+    ///
+    /// Written so that NaN refines. Without a centre sample the corners must be this close.
+    fn smooth(&self, stage: &Stage) -> bool {
+        let tolerance = stage.quality.tolerance;
+        let [a, b, c, d] = self.corners;
+        let error = match self.centre {
+            Some(centre) if stage.exact_surface() => {
+                let indirect = (a.indirect + b.indirect + c.indirect + d.indirect) * 0.25;
+                let predicted = stage.display.map(centre.colour - centre.indirect + indirect);
+                (predicted - centre.display).abs().max_element()
+            }
+            Some(centre) => {
+                let mean = (a.display + b.display + c.display + d.display) * 0.25;
+                (mean - centre.display).abs().max_element()
+            }
+            None => {
+                let lo = a.display.min(b.display).min(c.display.min(d.display));
+                let hi = a.display.max(b.display).max(c.display.max(d.display));
+                (hi - lo).max_element()
+            }
+        };
+        error <= tolerance
+    }
+}
+
+impl Surroundings {
+    /// Whether a shape, or the shadow of one, may lie between the samples of a cell.
+    fn may_hide_something(&self, stage: &Stage, corner: (usize, usize), cell: Cell, known: &Corners) -> bool {
+        let id = known.corners[0].id;
+        let own = if id >= 0.0 { id as usize >> 2 } else { usize::MAX };
+        let half = cell.size as f32 * 0.5;
+        let middle = ((corner.0 + cell.x) as f32 + half + 0.5, (corner.1 + cell.y) as f32 + half + 0.5);
+        let at = stage.on_screen(middle.0, middle.1);
+        let reach = Vec2::splat(half * stage.pixel);
+        let depths = known.corners.map(|s| s.depth);
+        let deepest = depths.into_iter().fold(0.0, f32::max);
+        for (i, dop) in stage.dops.iter().enumerate() {
+            if self.shapes >> (i & 63) & 1 == 0 || i == own || dop.unbounded || dop.near >= deepest {
+                continue;
+            }
+            if dop.meets_rectangle(at, reach) && may_cover(stage, i, at, reach, &depths) {
+                return true;
+            }
+        }
+        if own == usize::MAX {
+            return false;
+        }
+        let (lo, hi) = known
+            .corners
+            .iter()
+            .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(lo, hi), s| (lo.min(s.point), hi.max(s.point)));
+        let (centre, radius) = ((lo + hi) * 0.5, (hi - lo).length() * 0.5);
+        for ((lamp, shafts), &mask) in stage.shafts.iter().enumerate().zip(&self.shadows) {
+            let lit = known.corners.iter().all(|s| s.codes[lamp] != BLOCKED);
+            if mask == 0 || !lit {
+                continue;
+            }
+            // A body that already colours the light of all samples is known to be there.
+            let crossed = known.corners[0].codes[lamp] as u32;
+            let may = occluders(stage.scene, shafts, Some(own), centre, radius) & mask;
+            for (i, &bit) in stage.bits.iter().enumerate() {
+                let known_tint = bit > 0.0 && crossed & bit as u32 != 0;
+                let unbounded = matches!(stage.scene.shape(i), Shape::Plane(_));
+                if may >> (i & 63) & 1 == 1 && i != own && !known_tint && !unbounded {
+                    return true;
+                }
+            }
+        }
+        false
+    }
+}

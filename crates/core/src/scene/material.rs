@@ -1,0 +1,117 @@
+//! What a shape is made of.
+
+use glam::Vec3;
+
+/// Optical properties of a surface and of the body under it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Material {
+    /// Albedo of the diffuse part, linear RGB.
+    pub colour: Vec3,
+    /// Weight of the diffuse part, 0 to 1.
+    pub diffuse: f32,
+    /// Weight of the highlight of lamps, linear RGB.
+    pub specular: Vec3,
+    /// Exponent of Phong's highlight, at least 1.
+    pub exponent: f32,
+    /// Mirror reflectance at normal incidence, linear RGB; also the F0 of Cook-Torrance.
+    pub f0: Vec3,
+    /// Root mean square slope of the microfacets (Beckmann m), 0 to 1; widens mirrored lights.
+    pub roughness: f32,
+    /// Share of the mirrored light that is traced, 0 (no mirror) to 1.
+    pub reflection: f32,
+    /// Share of light that enters the body, 0 (opaque) to 1 (glass).
+    pub transparency: f32,
+    /// Index of refraction of the body.
+    pub ior: f32,
+    /// Factor on light that crosses the surface, linear RGB.
+    pub tint: Vec3,
+    /// Light given off, linear RGB.
+    pub emission: Vec3,
+    /// Factor on a lamp's light that crosses the whole body, linear RGB.
+    pub shadow: Vec3,
+    /// How much the albedo varies with a noise in world space, 0 to 1.
+    pub grain: f32,
+    /// Cells of that noise per world unit.
+    pub grain_scale: f32,
+}
+
+impl Default for Material {
+    fn default() -> Self {
+        Self {
+            colour: Vec3::ZERO,
+            diffuse: 1.0,
+            specular: Vec3::ZERO,
+            exponent: 1.0,
+            f0: Vec3::ZERO,
+            roughness: 0.0,
+            reflection: 0.0,
+            transparency: 0.0,
+            ior: 1.0,
+            tint: Vec3::ONE,
+            emission: Vec3::ZERO,
+            shadow: Vec3::ZERO,
+            grain: 0.0,
+            grain_scale: 1.0,
+        }
+    }
+}
+
+/// Where each property stands in [`Material::channels`]; colours take three places.
+#[derive(Clone, Copy)]
+#[repr(usize)]
+#[allow(missing_docs)]
+pub enum Channel {
+    Colour = 0,
+    Diffuse = 3,
+    Specular = 4,
+    Exponent = 7,
+    F0 = 8,
+    Roughness = 11,
+    Reflection = 12,
+    Transparency = 13,
+    Ior = 14,
+    Tint = 15,
+    Emission = 18,
+    Grain = 21,
+    GrainScale = 22,
+}
+
+impl Material {
+    /// Number of values in [`Material::channels`].
+    pub const CHANNELS: usize = 23;
+
+    /// The properties that shading reads, flat, so that packets can mix materials lane by lane.
+    pub fn channels(&self) -> [f32; Self::CHANNELS] {
+        let Self { colour: c, specular: s, f0: f, tint: t, emission: e, .. } = self;
+        [
+            c.x,
+            c.y,
+            c.z,
+            self.diffuse,
+            s.x,
+            s.y,
+            s.z,
+            self.exponent,
+            f.x,
+            f.y,
+            f.z,
+            self.roughness,
+            self.reflection,
+            self.transparency,
+            self.ior,
+            t.x,
+            t.y,
+            t.z,
+            e.x,
+            e.y,
+            e.z,
+            self.grain,
+            self.grain_scale,
+        ]
+    }
+
+    /// True if light passes through the body.
+    pub fn is_transparent(&self) -> bool {
+        self.transparency > 0.0
+    }
+}

@@ -1,0 +1,121 @@
+//! What is drawn: plain data, one list per kind of shape, no behaviour.
+//!
+//! A scene is made anew for each frame by the show's pure functions of time. Shapes of all kinds
+//! share one index space, [`Scene::shape_count`] long: spheres first, then planes, cylinders,
+//! cones and triangles, each in list order. Right-handed, y up, world units.
+
+mod background;
+mod camera;
+mod light;
+mod material;
+mod shapes;
+mod track;
+
+pub use background::{Background, Disc, Glow, Stop};
+pub use camera::Camera;
+pub use light::{Emitter, Light, LightKind};
+pub use material::{Channel, Material};
+pub use shapes::{Cone, Cylinder, Plane, Sphere, Triangle};
+pub use track::{Ease, Key, track};
+
+use glam::Vec3;
+
+/// How light that arrives directly from a lamp is reflected.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Shading {
+    /// Lambert plus (r·v)^n: Phong 1975.
+    #[default]
+    Phong,
+    /// Lambert plus Schlick Fresnel, Beckmann distribution and the V-cavity geometry term:
+    /// Cook and Torrance 1982.
+    CookTorrance,
+}
+
+/// Constant in-scatter inside a box: `c exp(-density d) + colour (1 - exp(-density d))`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fog {
+    /// Extinction per world unit.
+    pub density: f32,
+    /// Colour of a thick layer, linear RGB.
+    pub colour: Vec3,
+    /// Least corner of the box that holds the fog.
+    pub lo: Vec3,
+    /// Greatest corner.
+    pub hi: Vec3,
+}
+
+/// How the linear picture becomes display values; see [`crate::post`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grade {
+    /// Factor on linear light before the tone map.
+    pub exposure: f32,
+    /// Display value of black.
+    pub lift: Vec3,
+    /// Exponent divisor per channel: under 1 deepens the middle.
+    pub gamma: Vec3,
+    /// Display value of white.
+    pub gain: Vec3,
+    /// Darkening of the corners, 0 to 1.
+    pub vignette: f32,
+    /// Half amplitude of the dither and grain, in display units.
+    pub grain: f32,
+}
+
+impl Default for Grade {
+    fn default() -> Self {
+        Self {
+            exposure: 1.0,
+            lift: Vec3::ZERO,
+            gamma: Vec3::ONE,
+            gain: Vec3::ONE,
+            vignette: 0.0,
+            grain: 0.5 / 255.0,
+        }
+    }
+}
+
+/// Everything a frame shows.
+#[derive(Clone, Debug, Default)]
+pub struct Scene {
+    /// The eye.
+    pub camera: Camera,
+    /// What is seen where nothing is hit.
+    pub background: Background,
+    /// Spheres; opaque or transparent.
+    pub spheres: Vec<Sphere>,
+    /// Infinite planes; opaque.
+    pub planes: Vec<Plane>,
+    /// Cylinders, finite or infinite.
+    pub cylinders: Vec<Cylinder>,
+    /// Cones and frusta, finite or infinite.
+    pub cones: Vec<Cone>,
+    /// Single triangles.
+    pub triangles: Vec<Triangle>,
+    /// What shapes are made of; shapes hold indices into this list.
+    pub materials: Vec<Material>,
+    /// Lamps that are not seen themselves.
+    pub lights: Vec<Light>,
+    /// Rectangles that shine; seen in mirrors and through glass.
+    pub emitters: Vec<Emitter>,
+    /// The reflection model for direct light.
+    pub shading: Shading,
+    /// Light from everywhere below (normal down) and above (normal up), mixed by the normal's y.
+    pub ambient: [Vec3; 2],
+    /// Haze, if the scene has any.
+    pub fog: Option<Fog>,
+    /// Grading of the finished picture.
+    pub grade: Grade,
+    /// Show how the frame was sampled, on this share of the picture's width from the left.
+    pub overlay: f32,
+}
+
+impl Scene {
+    /// Number of shapes of all kinds together.
+    pub fn shape_count(&self) -> usize {
+        self.spheres.len()
+            + self.planes.len()
+            + self.cylinders.len()
+            + self.cones.len()
+            + self.triangles.len()
+    }
+}

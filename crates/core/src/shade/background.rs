@@ -1,0 +1,83 @@
+//! The sky behind everything, discs in it, and the shining rectangles that mirrors see.
+
+use crate::math::lanes::{F, V3};
+use crate::math::lanes_fn::exp;
+use crate::scene::{Background, Emitter};
+use crate::trace::{NONE, Rays8};
+
+/// Length of [a, b] ∩ [-half, half] over the length of [a, b]: a box seen through a box filter.
+///
+/// `w` is the filter's width; 0 gives the hard edge.
+#[inline(always)]
+fn covered(x: F, half: F, w: F) -> F {
+    let w = w.fast_max(F::splat(1e-6));
+    let (a, b) = (x - w * F::splat(0.5), x + w * F::splat(0.5));
+    ((b.fast_min(half) - a.fast_max(-half)) / w).fast_max(F::ZERO).fast_min(F::ONE)
+}
+
+/// Colour of the background in the direction of rays that hit nothing, and what was hit:
+/// [`NONE`] for the sky, `NONE - 1 - k` for disc k.
+///
+/// `spread` is the width of a ray's footprint per unit of distance.
+pub fn background(sky: &Background, rays: &Rays8, spread: F) -> (V3, F) {
+    let d = rays.direction;
+    let mut colour = V3::splat(glam::Vec3::ZERO);
+    for (i, stop) in sky.stops.iter().enumerate() {
+        let at = V3::splat(stop.colour);
+        if i == 0 {
+            colour = at;
+            continue;
+        }
+        let before = &sky.stops[i - 1];
+        let x = (d.y - F::splat(before.y)) * F::splat(1.0 / (stop.y - before.y));
+        colour = colour + (at - V3::splat(before.colour)) * x.fast_max(F::ZERO).fast_min(F::ONE);
+    }
+    for glow in &sky.glows {
+        let x = (d.dot(V3::splat(glow.direction)) - F::ONE) * F::splat(glow.sharpness);
+        colour = colour + V3::splat(glow.colour) * exp(x);
+    }
+    let mut id = F::splat(NONE);
+    for (k, disc) in sky.discs.iter().enumerate().rev() {
+        let c = V3::splat(disc.centre);
+        let r = F::splat(disc.radius);
+        let t = (c.z - rays.origin.z) / d.z;
+        let (x, y) = (rays.origin.x + d.x * t - c.x, rays.origin.y + d.y * t - c.y);
+        let share = covered((x * x + y * y).sqrt(), r, spread * t);
+        let share = t.simd_gt(F::ZERO).select(share, F::ZERO);
+        let height = y / (r + r) + F::splat(0.5);
+        let low = V3::splat(disc.low);
+        let shine = low + (V3::splat(disc.high) - low) * height.fast_max(F::ZERO).fast_min(F::ONE);
+        colour = colour + (shine - colour) * share;
+        id = share.simd_gt(F::splat(0.5)).select(F::splat(NONE - 1.0 - k as f32), id);
+    }
+    (colour, id)
+}
+
+/// What shining rectangles add to rays that end at `t`: their light, the share of the ray that
+/// they hide, and a code of which of them cover more than half of it.
+///
+/// The edges are softened by the ray's footprint (its width at the rectangle is `spread` times
+/// the distance), as a rough mirror would.
+pub fn emitters(list: &[Emitter], rays: &Rays8, spread: F, t: F) -> (V3, F, F) {
+    let mut light = V3::splat(glam::Vec3::ZERO);
+    let (mut open, mut seen) = (F::ONE, F::ZERO);
+    for (k, e) in list.iter().enumerate() {
+        let n = V3::splat(e.normal());
+        let facing = n.dot(rays.direction);
+        let c = V3::splat(e.centre) - rays.origin;
+        let at = c.dot(n) / facing;
+        let front = at.simd_gt(F::ZERO) & at.simd_lt(t) & facing.simd_lt(F::ZERO);
+        if !front.any() {
+            continue;
+        }
+        let p = rays.direction * at - c;
+        let w = spread * at;
+        let share = covered(p.dot(V3::splat(e.u)), F::splat(e.half[0]), w)
+            * covered(p.dot(V3::splat(e.v)), F::splat(e.half[1]), w);
+        let share = front.select(share, F::ZERO);
+        light = light + V3::splat(e.radiance) * (share * open);
+        open *= F::ONE - share;
+        seen += share.simd_gt(F::splat(0.5)).select(F::splat((1 << k.min(20)) as f32), F::ZERO);
+    }
+    (light, F::ONE - open, seen)
+}

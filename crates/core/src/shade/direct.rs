@@ -1,0 +1,156 @@
+//! Light that comes straight from the lamps, by the scene's reflection model.
+//!
+//! Radiance of a lamp of intensity I at distance d: `I lobe / d² * (diffuse + highlight)`, without
+//! 1/pi, so a white surface that faces a lamp of I = 1 at d = 1 has radiance 1.
+
+use super::fresnel::{Split, schlick};
+use super::lamps::Lamp;
+use crate::counters::{Counter, Counters};
+use crate::math::lanes::{F, V3};
+use crate::math::lanes_fn::{exp, pow};
+use crate::render::Stage;
+use crate::scene::{Channel, Shading};
+use crate::trace::{BLOCKED, Rays8, Surface, occlusion};
+use glam::Vec3;
+
+/// Lamps that may cast shadows; those after them light without.
+pub const MAX_LAMPS: usize = 8;
+
+/// Visibility codes of a packet, per lamp: see [`occlusion`].
+pub type Codes = [F; MAX_LAMPS];
+
+/// Where the visibility of the lamps comes from.
+pub enum Visibility<'a> {
+    /// Shadow rays against the candidate occluders of each lamp.
+    Trace(&'a [u64; MAX_LAMPS]),
+    /// Codes known from neighbouring samples.
+    Known,
+}
+
+/// Light that the lamps bring to surfaces.
+pub struct Lit {
+    /// What falls on the surface, by the cosine.
+    pub irradiance: V3,
+    /// What the highlights send to the eye.
+    pub highlight: V3,
+}
+
+/// What surfaces send to the eye but for mirrors and glass.
+pub struct Local {
+    /// To be multiplied with the albedo.
+    pub irradiance: V3,
+    /// Highlights and the surface's own light.
+    pub rest: V3,
+}
+
+/// Adds the light from all around (by the normal's height) and the surface's own to that of the
+/// lamps; what a mirror takes away is missing from the diffuse part.
+pub fn local(stage: &Stage, s: &Surface, split: &Split, lit: Lit) -> Local {
+    let [below, above] = stage.scene.ambient;
+    let x = s.normal.y * F::splat(0.5) + F::splat(0.5);
+    let ambient = V3::splat(below) + V3::splat(above - below) * x;
+    let mirrored = split.reflectance * s.value(Channel::Reflection);
+    let kept = (V3::splat(Vec3::ONE) - mirrored) * s.value(Channel::Diffuse);
+    Local { irradiance: (lit.irradiance + ambient) * kept, rest: lit.highlight + s.colour(Channel::Emission) }
+}
+
+/// Phong's highlight (r·v)^n with r·v = 2 (n·l)(n·v) - l·v, over the cosine's weight.
+#[inline(always)]
+fn phong(s: &Surface, l: V3, v: V3, n_l: F) -> V3 {
+    let rv = (n_l + n_l) * s.normal.dot(v) - l.dot(v);
+    s.colour(Channel::Specular) * pow(rv.fast_max(F::ZERO), s.value(Channel::Exponent))
+}
+
+/// Cook and Torrance's highlight pi D F G / (4 n·v), the cosine n·l included and cancelled.
+///
+/// Beckmann: D = exp(-tan²/m²) / (pi m² c⁴), 0 at grazing; V-cavities:
+/// G = min(1, 2 c n·v / v·h, 2 c n·l / v·h), taken as G / n·v so that nothing is divided by 0.
+#[inline(always)]
+fn cook_torrance(s: &Surface, l: V3, v: V3, n_l: F) -> V3 {
+    let n = s.normal;
+    let h = (l + v).normalize();
+    let n_v = n.dot(v).fast_max(F::splat(1e-4));
+    let n_h = n.dot(h).fast_max(F::splat(1e-4));
+    let v_h = v.dot(h).fast_max(F::splat(1e-4));
+    let m = s.value(Channel::Roughness).fast_max(F::splat(1e-3));
+    let c2 = n_h * n_h;
+    let m2 = m * m;
+    let d = exp(-(n.cross(h).dot(n.cross(h)) / (c2 * m2))) / (m2 * c2 * c2);
+    let two_c = n_h + n_h;
+    let g = (F::ONE / n_v).fast_min(two_c / v_h).fast_min(two_c * n_l / (v_h * n_v));
+    schlick(s.colour(Channel::F0), v_h) * s.colour(Channel::Specular) * (d * g * F::splat(0.25))
+}
+
+/// Direct light at surfaces seen from the unit direction `v`, in lanes `active`.
+///
+/// `codes` receives the visibility of each shadowed lamp, or holds it when it is known. It is 0,
+/// as for a lamp in plain view, where a surface faces away or lies outside the lamp's cone.
+pub fn direct(
+    stage: &Stage,
+    s: &Surface,
+    v: V3,
+    active: F,
+    visibility: Visibility,
+    codes: &mut Codes,
+    counters: &mut Counters,
+) -> Lit {
+    let zero = F::ZERO;
+    let mut sum = Lit { irradiance: V3::ZERO, highlight: V3::ZERO };
+    let specular = s.colour(Channel::Specular);
+    let takes = s.value(Channel::Diffuse) + specular.x + specular.y + specular.z;
+    // The inner side of glass has no highlights of lamps: they would be seen through itself.
+    let behind = s.inside & s.value(Channel::Transparency).simd_gt(zero);
+    let active = active & takes.simd_gt(zero) & !behind;
+    if !active.any() {
+        return sum;
+    }
+    let mirrors = s.value(Channel::Reflection).simd_gt(zero);
+    let facing = V3::select(s.inside, -s.outward, s.outward);
+    let start = s.point + facing * s.clearance;
+    for (k, lamp) in stage.lamps.iter().enumerate() {
+        let to_lamp = V3::splat(lamp.position) - start;
+        let d2 = to_lamp.dot(to_lamp).fast_max(F::splat(1e-8));
+        let l = to_lamp * (F::ONE / d2.sqrt());
+        let n_l = s.normal.dot(l);
+        let reach = lamp.lobe(-l);
+        let wanted = active & n_l.simd_gt(zero) & facing.dot(l).simd_gt(zero) & reach.simd_gt(zero);
+        if let (Some(code), Visibility::Trace(candidates)) = (codes.get_mut(k), &visibility) {
+            *code = zero;
+            if candidates[k] != 0 && wanted.any() {
+                counters.add(Counter::ShadowRays, wanted.to_bitmask().count_ones());
+                let rays = Rays8 { origin: start, direction: to_lamp };
+                let found = occlusion(stage.scene, &stage.bits, &rays, wanted, candidates[k], counters);
+                *code = found & wanted;
+            }
+        }
+        let code = codes.get(k).copied().unwrap_or(zero);
+        let lit = wanted & !code.simd_eq(F::splat(BLOCKED));
+        if !lit.any() {
+            continue;
+        }
+        counters.add(Counter::LightEvaluations, 8);
+        let light = tinted(stage, lamp, code) * (lit & (reach / d2));
+        let highlight = match stage.scene.shading {
+            Shading::Phong => phong(s, l, v, n_l),
+            Shading::CookTorrance => cook_torrance(s, l, v, n_l),
+        };
+        let hidden = if lamp.is_emitter { mirrors } else { zero };
+        sum.highlight += (light * highlight) & !hidden;
+        sum.irradiance += light * n_l;
+    }
+    sum
+}
+
+/// The lamp's colour behind the transparent shapes of each lane's code.
+fn tinted(stage: &Stage, lamp: &Lamp, code: F) -> V3 {
+    let colour = V3::splat(lamp.colour);
+    if !code.simd_gt(F::ZERO).any() {
+        return colour;
+    }
+    let lanes = code.to_array().map(|c| {
+        let bits = c as u32;
+        let tints = stage.tints.iter().enumerate();
+        tints.fold(Vec3::ONE, |sum, (i, &tint)| if bits >> i & 1 == 1 { sum * tint } else { sum })
+    });
+    colour * V3::from_fn(|i| lanes[i])
+}

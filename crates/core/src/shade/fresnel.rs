@@ -1,0 +1,61 @@
+//! How a surface splits light: Schlick's reflectance, the mirrored and the refracted direction.
+//!
+//! Refraction from the sine instead of the cosine: s² = |n × d|², cos_t² = (1 - ηs)(1 + ηs), which
+//! keeps its digits near the critical angle; total internal reflection (ηs >= 1) is a case of its
+//! own with reflectance 1. Schlick 1994; inside the denser body with the outer angle.
+
+use crate::math::lanes::{F, V3};
+use crate::scene::Channel;
+use crate::trace::Surface;
+
+/// Schlick's approximation f0 + (1 - f0)(1 - c)^5, c clamped to 0..1.
+#[inline(always)]
+pub fn schlick(f0: V3, cos: F) -> V3 {
+    let m = F::ONE - cos.fast_max(F::ZERO).fast_min(F::ONE);
+    let m2 = m * m;
+    let w = m2 * m2 * m;
+    let one = V3::splat(glam::Vec3::ONE);
+    f0 + (one - f0) * w
+}
+
+/// Where light goes from a surface.
+pub struct Split {
+    /// Share that is mirrored, before the material's `reflection`.
+    pub reflectance: V3,
+    /// Unit direction of the mirrored ray, never into the surface.
+    pub mirrored: V3,
+    /// Unit direction of the refracted ray; meaningless under total internal reflection.
+    pub refracted: V3,
+    /// Mask of total internal reflection.
+    pub total: F,
+}
+
+/// Splits rays with unit directions `d` at the surfaces `s`.
+pub fn split(s: &Surface, d: V3) -> Split {
+    let n = s.normal;
+    let cos = -d.dot(n);
+    let eta = s.value(Channel::Ior);
+    let eta = s.inside.select(eta, F::ONE / eta);
+    let across = d + n * cos;
+    let sine = eta * n.cross(d).length();
+    let k = (F::ONE - sine) * (F::ONE + sine);
+    let total = sine.simd_ge(F::ONE);
+    let cos_out = k.fast_max(F::ZERO).sqrt();
+    let refracted = (across * eta - n * cos_out).normalize();
+
+    // Seen from inside, Schlick takes the angle on the thin side, which reaches 90° first.
+    let transparent = s.value(Channel::Transparency).simd_gt(F::ZERO);
+    let total = total & transparent;
+    let schlick_cos = (s.inside & transparent).select(cos_out, cos);
+    let one = V3::splat(glam::Vec3::ONE);
+    let reflectance = V3::select(total, one, schlick(s.colour(Channel::F0), schlick_cos));
+
+    // A blended normal may mirror into the body: lift such rays just over the true surface.
+    let facing = V3::select(s.inside, -s.outward, s.outward);
+    let mirrored = d + n * (cos + cos);
+    let height = mirrored.dot(facing);
+    let least = F::splat(0.01);
+    let low = height.simd_lt(least);
+    let lifted = (mirrored + facing * (least - height)).normalize();
+    Split { reflectance, mirrored: V3::select(low, lifted, mirrored), refracted, total }
+}

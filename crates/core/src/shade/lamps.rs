@@ -1,0 +1,64 @@
+//! Lamps as shading sees them: points, spots and shining rectangles in one form.
+
+use crate::math::lanes::{F, V3};
+use crate::scene::{LightKind, Scene};
+use glam::Vec3;
+use std::f32::consts::PI;
+
+/// A source of direct light without extent.
+#[derive(Clone, Copy, Debug)]
+pub struct Lamp {
+    /// Position, world.
+    pub position: Vec3,
+    /// Intensity, linear RGB.
+    pub colour: Vec3,
+    /// Unit direction of most light.
+    axis: Vec3,
+    /// The cosine c to the axis gives (c - outer) * gain, kept in 0..1.
+    outer: f32,
+    gain: f32,
+    /// Spots ease in: x² (3 - 2x).
+    smooth: bool,
+    /// The lamp stands for a rectangle, whose highlight mirrors show by themselves.
+    pub is_emitter: bool,
+}
+
+/// All lamps of a scene: its lights, then one in the middle of each shining rectangle.
+pub fn lamps(scene: &Scene) -> Vec<Lamp> {
+    let lights = scene.lights.iter().map(|light| {
+        let (axis, inner, outer) = match light.kind {
+            LightKind::Point => (Vec3::ZERO, -1.0, -2.0),
+            LightKind::Spot { direction, inner, outer } => (direction, inner, outer),
+        };
+        let gain = 1.0 / (inner - outer).max(1e-6);
+        Lamp {
+            position: light.position,
+            colour: light.colour,
+            axis,
+            outer,
+            gain,
+            smooth: true,
+            is_emitter: false,
+        }
+    });
+    let emitters = scene.emitters.iter().map(|e| Lamp {
+        position: e.centre,
+        colour: e.radiance * (e.half[0] * e.half[1] * 4.0 / PI),
+        axis: e.normal(),
+        outer: 0.0,
+        gain: 1.0,
+        smooth: false,
+        is_emitter: true,
+    });
+    lights.chain(emitters).collect()
+}
+
+impl Lamp {
+    /// Share of the lamp's light that goes in unit direction `d` away from it.
+    #[inline(always)]
+    pub fn lobe(&self, d: V3) -> F {
+        let c = d.dot(V3::splat(self.axis));
+        let x = ((c - F::splat(self.outer)) * F::splat(self.gain)).fast_max(F::ZERO).fast_min(F::ONE);
+        if self.smooth { x * x * (F::splat(3.0) - (x + x)) } else { x }
+    }
+}

@@ -1,0 +1,13 @@
+//! Light at surfaces and along rays: direct light, background, fog, mirrors and glass.
+
+mod background;
+mod direct;
+mod fog;
+mod fresnel;
+mod lamps;
+
+pub use background::{background, emitters};
+pub use direct::{Codes, Lit, Local, MAX_LAMPS, Visibility, direct, local};
+pub use fog::fog;
+pub use fresnel::{Split, schlick, split};
+pub use lamps::{Lamp, lamps};

@@ -1,0 +1,38 @@
+//! The nearest hit of eight rays among a scene's shapes.
+
+use super::Rays8;
+use crate::counters::{Counter, Counters};
+use crate::math::lanes::F;
+use crate::scene::Scene;
+
+/// Hit id of a lane that hit nothing.
+pub const NONE: f32 = -1.0;
+
+/// Nearest hits of a packet.
+#[derive(Clone, Copy)]
+pub struct Hits {
+    /// Distance in lengths of the ray's direction, infinity for none.
+    pub t: F,
+    /// `4 * shape + part`, or [`NONE`]. Whole numbers under 2^24 are exact in an f32 lane, and
+    /// can be mixed under the same masks as the distances.
+    pub id: F,
+}
+
+/// The nearest hit of each ray among the candidate shapes; ties go to the lower shape index.
+///
+/// Bit i of `candidates` stands for the shapes whose index is i modulo 64: leaving out a bit must
+/// only leave out shapes that no lane can hit.
+pub fn nearest(scene: &Scene, rays: &Rays8, candidates: u64, counters: &mut Counters) -> Hits {
+    let mut best = Hits { t: F::splat(f32::INFINITY), id: F::splat(NONE) };
+    for index in 0..scene.shape_count() {
+        if candidates >> (index & 63) & 1 == 0 {
+            continue;
+        }
+        counters.add(Counter::ShapeTests, 8);
+        let (t, part) = scene.shape(index).span(rays).first();
+        let closer = t.simd_gt(F::ZERO) & t.simd_lt(best.t);
+        best.t = closer.select(t, best.t);
+        best.id = closer.select(F::splat(index as f32 * 4.0) + part, best.id);
+    }
+    best
+}

@@ -1,0 +1,122 @@
+//! Rays against shapes, eight rays at a time.
+//!
+//! A ray's result never depends on which packet it rides in: every operation acts lane by lane.
+//! Robust forms and their sources stand with each kernel.
+
+mod hit;
+mod occlusion;
+mod plane;
+mod round;
+mod sphere;
+mod surface;
+mod triangle;
+
+pub use hit::{Hits, NONE, nearest};
+pub use occlusion::{BLOCKED, occlusion};
+pub use plane::plane;
+pub use round::{cone, cylinder};
+pub use sphere::sphere;
+pub use surface::{Surface, surface};
+pub use triangle::triangle;
+
+use crate::math::lanes::{F, V3};
+use crate::scene::{Cone, Cylinder, Plane, Scene, Sphere, Triangle};
+
+/// Eight rays. Directions need not be unit vectors; distances along a ray are in lengths of its
+/// direction.
+#[derive(Clone, Copy)]
+pub struct Rays8 {
+    /// Origins, world.
+    pub origin: V3,
+    /// Directions, world.
+    pub direction: V3,
+}
+
+/// Where eight rays enter and leave a body, as distances along the rays.
+///
+/// A miss has both at -1. An open shape (triangle, plane) has both equal.
+#[derive(Clone, Copy)]
+pub struct Span {
+    /// First crossing, -infinity if the body has no beginning there.
+    pub enter: F,
+    /// Last crossing, or infinity.
+    pub exit: F,
+    /// Part of the shape crossed first: 0 side, 1 near cap, 2 far cap.
+    pub enter_part: F,
+    /// Part crossed last.
+    pub exit_part: F,
+}
+
+impl Span {
+    /// A crossing of an open shape at `t`, or a miss where `hit` is not set.
+    #[inline(always)]
+    pub fn single(t: F, hit: F) -> Self {
+        let t = hit.select(t, F::splat(-1.0));
+        Self { enter: t, exit: t, enter_part: F::ZERO, exit_part: F::ZERO }
+    }
+
+    /// The nearest crossing in front of the ray's origin: distance (0 or less for none) and part.
+    #[inline(always)]
+    pub fn first(&self) -> (F, F) {
+        let outside = self.enter.simd_gt(F::ZERO);
+        (outside.select(self.enter, self.exit), outside.select(self.enter_part, self.exit_part))
+    }
+}
+
+/// One shape of any kind.
+#[derive(Clone, Copy)]
+#[allow(missing_docs)]
+pub enum Shape<'a> {
+    Sphere(&'a Sphere),
+    Plane(&'a Plane),
+    Cylinder(&'a Cylinder),
+    Cone(&'a Cone),
+    Triangle(&'a Triangle),
+}
+
+impl Scene {
+    /// The shape at `index` in the common index space, `index < shape_count()`.
+    pub fn shape(&self, index: usize) -> Shape<'_> {
+        let mut i = index;
+        if let Some(s) = self.spheres.get(i) {
+            return Shape::Sphere(s);
+        }
+        i -= self.spheres.len();
+        if let Some(s) = self.planes.get(i) {
+            return Shape::Plane(s);
+        }
+        i -= self.planes.len();
+        if let Some(s) = self.cylinders.get(i) {
+            return Shape::Cylinder(s);
+        }
+        i -= self.cylinders.len();
+        if let Some(s) = self.cones.get(i) {
+            return Shape::Cone(s);
+        }
+        Shape::Triangle(&self.triangles[i - self.cones.len()])
+    }
+}
+
+impl Shape<'_> {
+    /// Index of the shape's material.
+    pub fn material(&self) -> usize {
+        match self {
+            Shape::Sphere(s) => s.material,
+            Shape::Plane(s) => s.material,
+            Shape::Cylinder(s) => s.material,
+            Shape::Cone(s) => s.material,
+            Shape::Triangle(s) => s.material,
+        }
+    }
+
+    /// Where `rays` cross the shape.
+    pub fn span(&self, rays: &Rays8) -> Span {
+        match self {
+            Shape::Sphere(s) => sphere(rays, s),
+            Shape::Plane(s) => plane(rays, s),
+            Shape::Cylinder(s) => cylinder(rays, s),
+            Shape::Cone(s) => cone(rays, s),
+            Shape::Triangle(s) => triangle(rays, s),
+        }
+    }
+}

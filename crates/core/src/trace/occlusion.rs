@@ -1,0 +1,49 @@
+//! Whether light reaches a point: blocked by an opaque shape, coloured by transparent ones.
+
+use super::Rays8;
+use crate::counters::{Counter, Counters};
+use crate::math::lanes::F;
+use crate::scene::Scene;
+
+/// Visibility code of a lamp that an opaque shape hides.
+pub const BLOCKED: f32 = -1.0;
+
+/// End of a shadow ray that runs to the lamp: just before it, by four units in the last place.
+const END: f32 = 1.0 - 4.0 / 16_777_216.0;
+
+/// What lies between each origin and `origin + direction`.
+///
+/// Returns per lane [`BLOCKED`], or the sum of `bits[shape]` over the transparent shapes that the
+/// segment crosses. `bits` holds a power of two for each transparent shape and 0 for opaque ones.
+/// Lanes outside `wanted` return anything.
+pub fn occlusion(
+    scene: &Scene,
+    bits: &[f32],
+    rays: &Rays8,
+    wanted: F,
+    candidates: u64,
+    counters: &mut Counters,
+) -> F {
+    let (zero, end) = (F::ZERO, F::splat(END));
+    let mut code = F::ZERO;
+    let mut open = wanted;
+    for (index, &bit) in bits.iter().enumerate() {
+        if candidates >> (index & 63) & 1 == 0 {
+            continue;
+        }
+        counters.add(Counter::ShapeTests, 8);
+        let span = scene.shape(index).span(rays);
+        if bit > 0.0 {
+            let crossed = span.exit.simd_gt(zero) & span.enter.simd_lt(end);
+            code += crossed & F::splat(bit);
+        } else {
+            let within = |t: F| t.simd_gt(zero) & t.simd_lt(end);
+            let hidden = within(span.enter) | within(span.exit);
+            open &= !hidden;
+            if !open.any() {
+                break;
+            }
+        }
+    }
+    (wanted & !open).select(F::splat(BLOCKED), code)
+}

@@ -1,0 +1,127 @@
+//! Ray against cylinder and cone: where the ray is inside the side, cut by the slab of the ends.
+//!
+//! Both sides are quadratics A t² + 2 B t + C in the plane across the axis a, built from cross
+//! products with a instead of differences of squares, and with factored discriminants:
+//! cylinder D = (r|d×a| - |δ|)(r|d×a| + |δ|) with δ = f·(d×a); cone of slope k
+//! D = (k|f∥ d⟂ - d∥ f⟂| - |δ|)(k|f∥ d⟂ - d∥ f⟂| + |δ|). Roots q/A and C/q, so no root divides by
+//! a vanishing A alone. Intersecting intervals leaves no gap at the rims. Own expansion; the
+//! q-form is Kahan's.
+
+use super::{Rays8, Span};
+use crate::math::lanes::{F, V3, copysign};
+use crate::scene::{Cone, Cylinder};
+
+/// What both shapes know of a ray: its parts along the axis and across it.
+struct Axial {
+    /// Origin relative to the reference point, along the axis, lengths.
+    origin: F,
+    /// Direction along the axis.
+    direction: F,
+    /// Direction × axis: across, turned by 90°.
+    n: V3,
+    /// (Origin - reference) × axis.
+    m: V3,
+    /// |n × m|, from the triple product.
+    cross: F,
+}
+
+impl Axial {
+    #[inline(always)]
+    fn new(rays: &Rays8, reference: glam::Vec3, axis: glam::Vec3) -> Self {
+        let a = V3::splat(axis);
+        let d = rays.direction;
+        let f = rays.origin - V3::splat(reference);
+        let n = d.cross_exact(a);
+        Self { origin: f.dot(a), direction: d.dot(a), n, m: f.cross_exact(a), cross: f.dot(n).abs() }
+    }
+}
+
+/// Roots q/A and C/q of A t² + 2 B t + C for the discriminant `disc`, unordered.
+#[inline(always)]
+fn roots(a: F, b: F, c: F, disc: F) -> (F, F) {
+    let q = -(b + copysign(disc.fast_max(F::ZERO).sqrt(), b));
+    (q / a, q.simd_eq(F::ZERO).select(F::ZERO, c / q))
+}
+
+/// The interval where a ray is inside the side, cut by the slab `lo..hi` along the axis.
+///
+/// An end without a cap is passed through: the far crossing counts then, if it is not open too.
+fn clip(ray: &Axial, side: (F, F), hit: F, range: [f32; 2], caps: [bool; 2]) -> Span {
+    let (zero, inf) = (F::ZERO, F::splat(f32::INFINITY));
+    let (lo, hi) = (F::splat(range[0]), F::splat(range[1]));
+    let forward = ray.direction.simd_gt(zero);
+    let (t_lo, t_hi) = ((lo - ray.origin) / ray.direction, (hi - ray.origin) / ray.direction);
+    let across = ray.direction.simd_eq(zero);
+    let between = ray.origin.simd_ge(lo) & ray.origin.simd_le(hi);
+    let empty = inf;
+    let slab_enter = across.select(between.select(-inf, empty), forward.select(t_lo, t_hi));
+    let slab_exit = across.select(between.select(inf, -empty), forward.select(t_hi, t_lo));
+
+    let by_side = side.0.simd_ge(slab_enter);
+    let out_side = side.1.simd_le(slab_exit);
+    let enter = by_side.select(side.0, slab_enter);
+    let exit = out_side.select(side.1, slab_exit);
+    let (near, far) = (F::splat(1.0), F::splat(2.0));
+    let enter_part = by_side.select(zero, forward.select(near, far));
+    let exit_part = out_side.select(zero, forward.select(far, near));
+
+    let open = |part: F| {
+        let mut gap = zero;
+        for (cap, index) in caps.into_iter().zip([near, far]) {
+            if !cap {
+                gap |= part.simd_eq(index);
+            }
+        }
+        gap
+    };
+    let hit = hit & enter.simd_le(exit);
+    let miss = F::splat(-1.0);
+    let exit = (hit & !open(exit_part)).select(exit, miss);
+    let pass = open(enter_part) | !hit;
+    Span { enter: pass.select(exit, enter), exit, enter_part: pass.select(exit_part, enter_part), exit_part }
+}
+
+/// Where `rays` cross the cylinder.
+pub fn cylinder(rays: &Rays8, s: &Cylinder) -> Span {
+    let ray = Axial::new(rays, s.base, s.axis);
+    let r = F::splat(s.radius);
+    let (n, m) = (ray.n.length(), ray.m.length());
+    let disc = (r * n - ray.cross) * (r * n + ray.cross);
+    let c = (m - r) * (m + r);
+    let (x, y) = roots(n * n, ray.n.dot(ray.m), c, disc);
+    let parallel = n.simd_eq(F::ZERO);
+    let inf = F::splat(f32::INFINITY);
+    let side = (parallel.select(-inf, x.fast_min(y)), parallel.select(inf, x.fast_max(y)));
+    let hit = parallel.select(c.simd_le(F::ZERO), disc.simd_ge(F::ZERO));
+    let range = if s.length < f32::INFINITY { [0.0, s.length] } else { [-s.length, s.length] };
+    clip(&ray, side, hit, range, [true; 2])
+}
+
+/// Where `rays` cross the cone.
+pub fn cone(rays: &Rays8, s: &Cone) -> Span {
+    let ray = Axial::new(rays, s.apex, s.axis);
+    let k = F::splat(s.slope);
+    let (zero, inf) = (F::ZERO, F::splat(f32::INFINITY));
+    let (n, m) = (ray.n.length(), ray.m.length());
+    let (kd, kf) = (k * ray.direction, k * ray.origin);
+    let a = (n - kd.abs()) * (n + kd.abs());
+    let b = ray.n.dot(ray.m) - kd * kf;
+    let c = (m - kf.abs()) * (m + kf.abs());
+    let root = k * (ray.n * ray.origin - ray.m * ray.direction).length();
+    let disc = (root - ray.cross) * (root + ray.cross);
+    let (x, y) = roots(a, b, c, disc);
+
+    // Flat across the axis (A > 0): between the roots, if these lie on this nappe. Steep: one
+    // root on each nappe, and the inside goes on for ever. A = 0: the other root is at infinity.
+    let flat = a.simd_gt(zero);
+    let (lo, hi) = (x.fast_min(y), x.fast_max(y));
+    let up = ray.direction.simd_gt(zero);
+    let parallel = a.simd_eq(zero);
+    let own = parallel.select(y, up.select(hi, lo));
+    let middle = (lo + hi) * F::splat(0.5);
+    let height = ray.origin + flat.select(middle, own) * ray.direction;
+    let enter = flat.select(lo, up.select(own, -inf));
+    let exit = flat.select(hi, up.select(inf, own));
+    let hit = a.simd_lt(zero) | (disc.simd_ge(zero) & height.simd_ge(zero));
+    clip(&ray, (enter, exit), hit, s.range, s.caps)
+}

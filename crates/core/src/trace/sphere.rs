@@ -1,0 +1,34 @@
+//! Ray and sphere: the discriminant from the perpendicular that runs from centre to ray.
+//!
+//! With f = o - c and l = f - ((f·d)/(d·d)) d: D = r² - l·l, q = b + sign(b) sqrt((d·d) D),
+//! b = -f·d, and the roots (f·f - r²)/q and q/(d·d). f·f - r² is taken as (|f|-r)(|f|+r).
+//! Haines, Günther and Akenine-Möller, Ray Tracing Gems ch. 7.
+
+use super::{Rays8, Span};
+use crate::math::lanes::{F, V3, copysign};
+use crate::scene::Sphere;
+
+/// Where `rays` cross the sphere.
+pub fn sphere(rays: &Rays8, s: &Sphere) -> Span {
+    let d = rays.direction;
+    let f = rays.origin - V3::splat(s.centre);
+    let r = F::splat(s.radius);
+    let a = d.dot(d);
+    let b = -f.dot(d);
+    let l = f + d * (b / a);
+    let disc = r * r - l.dot(l);
+    let q = b + copysign((a * disc).sqrt(), b);
+    let ff = f.dot(f).sqrt();
+    let c = (ff - r) * (ff + r);
+    let one = q / a;
+    let other = q.simd_eq(F::ZERO).select(F::ZERO, c / q);
+    let behind = b.simd_lt(F::ZERO);
+    let hit = disc.simd_ge(F::ZERO);
+    let miss = F::splat(-1.0);
+    Span {
+        enter: hit.select(behind.select(one, other), miss),
+        exit: hit.select(behind.select(other, one), miss),
+        enter_part: F::ZERO,
+        exit_part: F::ZERO,
+    }
+}

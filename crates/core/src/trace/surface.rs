@@ -1,0 +1,177 @@
+//! What eight rays have hit: points put back onto their surfaces, normals, materials.
+//!
+//! A point o + t d is off its surface by rounding that grows with t. It is projected back onto
+//! the shape, and secondary rays start [`Surface::clearance`] away along the geometric normal: 4
+//! units in the last place of the largest coordinate involved (Wächter and Binder, Ray Tracing
+//! Gems ch. 6; PBRT 4th ed. §6.8.6).
+
+use super::{Rays8, Shape};
+use crate::math::lanes::{F, V3};
+use crate::math::noise::value_noise;
+use crate::scene::{Channel, Material, Scene, Sphere};
+
+/// Surfaces of a packet. Lanes without a hit hold finite nonsense.
+pub struct Surface {
+    /// Point on the surface, world.
+    pub point: V3,
+    /// Unit normal for shading, on the side the ray came from.
+    pub normal: V3,
+    /// Unit geometric normal that points out of the body.
+    pub outward: V3,
+    /// Mask of rays that met the surface from behind: from inside a body.
+    pub inside: F,
+    /// How far off the surface a secondary ray must start, world units.
+    pub clearance: F,
+    /// Material channels, see [`Channel`].
+    pub material: [F; Material::CHANNELS],
+}
+
+impl Surface {
+    /// One value of the material.
+    #[inline(always)]
+    pub fn value(&self, channel: Channel) -> F {
+        self.material[channel as usize]
+    }
+
+    /// A colour of the material.
+    #[inline(always)]
+    pub fn colour(&self, channel: Channel) -> V3 {
+        let i = channel as usize;
+        V3 { x: self.material[i], y: self.material[i + 1], z: self.material[i + 2] }
+    }
+}
+
+/// Point, outward normal, shading normal and size of the largest coordinate, for one shape.
+type Located = (V3, V3, V3, F);
+
+fn max_abs(p: V3) -> F {
+    p.x.abs().fast_max(p.y.abs()).fast_max(p.z.abs())
+}
+
+/// Projects `p` onto the plane through `point` with unit normal `n`.
+fn onto_plane(p: V3, point: glam::Vec3, n: V3) -> Located {
+    let point = V3::splat(point);
+    (p - n * n.dot(p - point), n, n, max_abs(point))
+}
+
+/// The sphere's normals, flowing into its neighbours' as those of a quadratic smooth minimum.
+fn blended(scene: &Scene, own: &Sphere, p: V3, n: V3) -> V3 {
+    let mut normal = n;
+    if own.blend > 0.0 {
+        let k = F::splat(own.blend);
+        for other in scene.spheres.iter().filter(|o| o.blend > 0.0 && !std::ptr::eq(*o, own)) {
+            let v = p - V3::splat(other.centre);
+            let len = v.length();
+            let distance = (len - F::splat(other.radius)).abs();
+            let h = (k - distance).fast_max(F::ZERO) / k * F::splat(0.5);
+            normal = normal + (v * (F::ONE / len) - normal) * h;
+        }
+        normal = normal.normalize();
+    }
+    normal
+}
+
+/// Puts `p` back onto the given part (0 side, 1 near cap, 2 far cap) of a shape.
+fn locate(scene: &Scene, shape: Shape, part: u32, p: V3) -> Located {
+    match shape {
+        Shape::Sphere(s) => {
+            let c = V3::splat(s.centre);
+            let r = F::splat(s.radius);
+            let n = (p - c).normalize();
+            let p = c + n * r;
+            (p, n, blended(scene, s, p, n), max_abs(c) + r)
+        }
+        Shape::Plane(s) => onto_plane(p, s.point, V3::splat(s.normal)),
+        Shape::Triangle(s) => {
+            let [a, b, c] = s.corners;
+            let n = (b - a).cross(c - a);
+            onto_plane(p, a, V3::splat(n).normalize())
+        }
+        Shape::Cylinder(s) => round(p, s.base, s.axis, (s.radius, 0.0), [0.0, s.length], part),
+        Shape::Cone(s) => round(p, s.apex, s.axis, (0.0, s.slope), s.range, part),
+    }
+}
+
+/// [`locate`] for shapes about an axis: radius is `profile.0 + profile.1 * height`.
+fn round(
+    p: V3,
+    reference: glam::Vec3,
+    axis: glam::Vec3,
+    profile: (f32, f32),
+    range: [f32; 2],
+    part: u32,
+) -> Located {
+    let a = V3::splat(axis);
+    if part > 0 {
+        let height = range[part as usize - 1];
+        let n = if part == 1 { -a } else { a };
+        return onto_plane(p, reference + axis * height, n);
+    }
+    let reference = V3::splat(reference);
+    let f = p - reference;
+    let height = f.dot(a);
+    let radial = f - a * height;
+    let len = radial.length();
+    // On the axis, at a cone's apex, the side has no normal: there it points back along the axis.
+    let on_axis = len.simd_eq(F::ZERO);
+    let radial = V3::select(on_axis, -a, radial * (F::ONE / on_axis.select(F::ONE, len)));
+    let slope = F::splat(profile.1);
+    let scale = (F::ONE + slope * slope).sqrt();
+    let n = (radial - a * slope) * (F::ONE / scale);
+    let off = (len - (F::splat(profile.0) + slope * height)) / scale;
+    (p - n * off, n, n, max_abs(reference) + F::splat(profile.0))
+}
+
+/// Locates the surfaces that `rays` hit at distances `t`; ids as in [`super::Hits`]. `spread` is
+/// the width of the rays' footprints per unit of distance, which textures are filtered by.
+pub fn surface(scene: &Scene, rays: &Rays8, t: F, id: F, spread: F) -> Surface {
+    let zero = V3::splat(glam::Vec3::ZERO);
+    let up = V3::splat(glam::Vec3::Y);
+    let mut s = Surface {
+        point: zero,
+        normal: up,
+        outward: up,
+        inside: F::ZERO,
+        clearance: F::ZERO,
+        material: [F::ZERO; Material::CHANNELS],
+    };
+    let p = rays.origin + rays.direction * t;
+    let ids = id.to_array();
+    let mut todo = id.simd_ge(F::ZERO).to_bitmask();
+    while todo != 0 {
+        let lane_id = ids[todo.trailing_zeros() as usize];
+        let mask = id.simd_eq(F::splat(lane_id));
+        todo &= !mask.to_bitmask();
+        let (index, part) = (lane_id as usize >> 2, lane_id as u32 & 3);
+        let shape = scene.shape(index);
+        let (point, outward, normal, scale) = locate(scene, shape, part, p);
+        s.point = V3::select(mask, point, s.point);
+        s.outward = V3::select(mask, outward, s.outward);
+        s.normal = V3::select(mask, normal, s.normal);
+        let scale = scale.fast_max(max_abs(point)).fast_max(F::splat(1e-30));
+        s.clearance = mask.select(scale * F::splat(4.0 / 8_388_608.0), s.clearance);
+        let channels = scene.materials[shape.material()].channels();
+        for (lane, &value) in s.material.iter_mut().zip(&channels) {
+            *lane = mask.select(F::splat(value), *lane);
+        }
+    }
+    s.inside = s.outward.dot(rays.direction).simd_gt(F::ZERO);
+    s.normal = V3::select(s.inside, -s.normal, s.normal);
+    grain(&mut s, t * spread);
+    s
+}
+
+/// Varies the albedo by a noise in world space, which fades as its cells get smaller than the
+/// footprint (`width`, world units).
+fn grain(s: &mut Surface, width: F) {
+    let amount = s.value(Channel::Grain);
+    if !amount.simd_gt(F::ZERO).any() {
+        return;
+    }
+    let scale = s.value(Channel::GrainScale);
+    let fade = (F::splat(2.0) - width * scale * F::splat(2.0)).fast_max(F::ZERO).fast_min(F::ONE);
+    let factor = F::ONE + amount * fade * value_noise(s.point * scale);
+    for channel in 0..3 {
+        s.material[channel] *= factor;
+    }
+}

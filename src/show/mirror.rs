@@ -1,0 +1,132 @@
+//! Mirror: an hourglass of two steel cones with a mirror ball at its waist, before a blue moon.
+//!
+//! The ball rises on the beat of each fourth bar and lifts the upper cone, which sinks back slowly
+//! by itself; two glass balls circle at different heights in opposite directions, one with an
+//! ember inside. Everything stands on a dark mirror.
+
+use super::paint::{degrees, glass, metal, orbit, polished, seconds, smooth, swing, v};
+use glam::Vec3;
+use luc_core::scene::*;
+
+/// Seconds between two lifts: four bars.
+const CYCLE: f32 = 8.0;
+
+/// How high the ball stands over its rest, and how high the cone does, units.
+fn lift(t: f32) -> (f32, f32) {
+    const HEIGHT: f32 = 0.9;
+    let t = t % CYCLE;
+    // Up in a quarter of a second, easing out; the ball falls freely, the cone sinks 3.5 s.
+    let up = 1.0 - (1.0 - (t / 0.25).min(1.0)) * (1.0 - (t / 0.25).min(1.0));
+    let fall = ((t - 0.5) / 0.45).max(0.0);
+    let ball = (up - fall * fall).max(0.0);
+    let cone = if t < 0.25 { up } else { 1.0 - smooth((t - 0.25) / 3.5) };
+    (ball.min(cone) * HEIGHT, cone * HEIGHT)
+}
+
+/// The scene at a local frame.
+pub fn scene(frame: u64) -> Scene {
+    let t = seconds(frame);
+    let (ball, cone) = lift(t);
+    let above = Vec3::Y * cone;
+    let ember = orbit(0.298 + t / 11.0, 2.9, 3.75 + 0.4 * swing(t, 7.0, 0.0));
+    let water = orbit(0.845 - t / 13.0, 2.84, 1.35 + 0.4 * swing(t, 9.0, 0.0));
+    let turn = degrees(-15.0 + 12.0 * swing(t, 17.0, 0.0) + 6.0 * swing(t, 23.0, 0.25));
+    let distance = 15.4 - 2.9 * smooth(t / 30.0);
+    let target = v(1.5, 2.4, 0.0);
+    let away = orbit(turn / std::f32::consts::TAU, distance, -0.05);
+
+    let steel = Material { specular: v(0.35, 0.47, 0.66), exponent: 40.0, ..metal(v(0.2, 0.27, 0.38), 0.27) };
+    Scene {
+        camera: Camera { position: target + away, target, roll: degrees(1.5), fov: degrees(43.0) },
+        background: Background {
+            stops: vec![
+                Stop { y: -1.0, colour: v(0.002, 0.004, 0.01) },
+                Stop { y: -0.02, colour: v(0.02, 0.045, 0.11) },
+                Stop { y: 0.03, colour: v(0.035, 0.085, 0.21) },
+                Stop { y: 0.2, colour: v(0.01, 0.026, 0.075) },
+                Stop { y: 0.6, colour: v(0.003, 0.007, 0.022) },
+                Stop { y: 1.0, colour: v(0.002, 0.004, 0.012) },
+            ],
+            glows: vec![],
+            discs: vec![Disc {
+                centre: v(8.0, 5.3, -24.0),
+                radius: 5.6,
+                low: v(0.24, 0.48, 1.0) * 0.08,
+                high: v(0.24, 0.48, 1.0) * 0.8,
+            }],
+        },
+        spheres: vec![
+            Sphere { centre: v(0.0, 2.48 + ball, 0.0), radius: 0.5, material: 1, blend: 0.0 },
+            Sphere { centre: ember, radius: 0.82, material: 2, blend: 0.0 },
+            Sphere { centre: ember, radius: 0.2, material: 3, blend: 0.0 },
+            Sphere { centre: water, radius: 0.82, material: 4, blend: 0.0 },
+        ],
+        planes: vec![Plane { point: Vec3::ZERO, normal: Vec3::Y, material: 5 }],
+        cones: vec![
+            Cone::between((v(0.0, 2.1, 0.0), 0.34), (Vec3::ZERO, 1.3), [false, false], 0),
+            Cone::between(
+                (v(0.0, 3.02, 0.0) + above, 0.0),
+                (v(0.0, 5.2, 0.0) + above, 1.3),
+                [false, true],
+                0,
+            ),
+        ],
+        materials: vec![
+            steel,
+            metal(v(0.93, 0.95, 0.98), 0.02),
+            glass(v(1.0, 0.74, 0.42), v(1.0, 0.3, 0.04), 1.28),
+            Material { diffuse: 0.0, emission: v(1.0, 0.46, 0.12) * 9.0, ..Material::default() },
+            glass(v(0.7, 0.94, 1.0), v(0.12, 0.62, 1.0), 1.5),
+            Material { grain: 0.18, grain_scale: 0.9, ..polished(v(0.13, 0.17, 0.24), 0.05, 1.75) },
+        ],
+        lights: vec![
+            Light {
+                position: ember + v(0.0, -1.05, 0.5),
+                colour: v(1.0, 0.45, 0.12) * 2.28,
+                kind: LightKind::Point,
+            },
+            Light {
+                position: v(-4.4, 11.0, -4.6),
+                colour: v(0.86, 0.93, 1.0) * 96.3,
+                kind: LightKind::Spot {
+                    direction: (v(0.9, 0.0, 1.0) - v(-4.4, 11.0, -4.6)).normalize(),
+                    inner: 0.85,
+                    outer: 0.743,
+                },
+            },
+        ],
+        emitters: vec![
+            Emitter::facing(v(-5.2, 4.6, 6.0), v(0.0, 2.6, 0.0), 0.9, 10.0, v(0.62, 0.8, 1.0) * 21.93),
+            Emitter::facing(v(7.5, 7.0, -5.0), v(0.0, 2.5, 0.0), 1.0, 5.0, v(0.7, 0.85, 1.0) * 26.74),
+        ],
+        shading: Shading::Phong,
+        ambient: [v(0.01, 0.015, 0.03), v(0.008, 0.02, 0.055)],
+        fog: Some(Fog {
+            density: 0.012,
+            colour: v(0.03, 0.075, 0.18),
+            lo: v(-80.0, -0.2, -80.0),
+            hi: v(80.0, 5.0, -7.0),
+        }),
+        grade: Grade {
+            lift: v(0.0, 0.006, 0.02),
+            gamma: v(0.92, 0.92, 0.97),
+            vignette: 0.18,
+            grain: 0.007,
+            ..Grade::default()
+        },
+        ..Scene::default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_ball_never_enters_the_upper_cone() {
+        for frame in 0..super::super::PARTS[0].frames {
+            let (ball, cone) = lift(seconds(frame));
+            assert!(ball <= cone && ball >= 0.0 && cone <= 0.9 + 1e-6, "frame {frame}: {ball} over {cone}");
+        }
+    }
+}

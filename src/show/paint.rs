@@ -1,0 +1,70 @@
+//! Short forms that the scenes share: motion in seconds, colours, materials.
+
+use glam::Vec3;
+use luc_core::math::scalar::{sin, sin_cos};
+use luc_core::scene::Material;
+use std::f32::consts::{PI, TAU};
+
+use super::FPS;
+
+/// Seconds of a local frame.
+pub fn seconds(frame: u64) -> f32 {
+    frame as f32 / FPS as f32
+}
+
+/// A vector or colour.
+pub const fn v(x: f32, y: f32, z: f32) -> Vec3 {
+    Vec3::new(x, y, z)
+}
+
+/// sin(2 pi (t / period + phase)): a swing that takes `period` seconds.
+pub fn swing(t: f32, period: f32, phase: f32) -> f32 {
+    sin((t / period + phase) * TAU)
+}
+
+/// Point on a level circle around the y axis at `turn` (1 is once around), from +z towards +x.
+pub fn orbit(turn: f32, radius: f32, height: f32) -> Vec3 {
+    let (sin, cos) = sin_cos(turn * TAU);
+    v(sin * radius, height, cos * radius)
+}
+
+/// Degrees as radians.
+pub const fn degrees(x: f32) -> f32 {
+    x * (PI / 180.0)
+}
+
+/// x² (3 - 2x) of x kept in 0..1.
+pub fn smooth(x: f32) -> f32 {
+    let x = x.clamp(0.0, 1.0);
+    x * x * (3.0 - 2.0 * x)
+}
+
+/// A bare metal: no diffuse part, mirrors in its own colour.
+pub fn metal(f0: Vec3, roughness: f32) -> Material {
+    Material { diffuse: 0.0, f0, roughness, reflection: 1.0, ..Material::default() }
+}
+
+/// A polished body with a diffuse part under a clear surface.
+pub fn polished(colour: Vec3, roughness: f32, ior: f32) -> Material {
+    Material { colour, f0: f0(ior), roughness, reflection: 1.0, ior, ..Material::default() }
+}
+
+/// A clear body: `tint` at each surface, `shadow` on light through all of it.
+pub fn glass(tint: Vec3, shadow: Vec3, ior: f32) -> Material {
+    Material {
+        diffuse: 0.0,
+        f0: f0(ior),
+        reflection: 1.0,
+        transparency: 1.0,
+        ior,
+        tint,
+        shadow,
+        ..Material::default()
+    }
+}
+
+/// Reflectance at normal incidence of a body with index of refraction `ior` in air.
+fn f0(ior: f32) -> Vec3 {
+    let r = (ior - 1.0) / (ior + 1.0);
+    Vec3::splat(r * r)
+}
