@@ -8,7 +8,7 @@ fn main() {
     let mut pixels = vec![0; (w * h) as usize];
     for _ in 0..8 {
         let t = std::time::Instant::now();
-        luc::show::frame(&mut renderer, n, (w, h), &q, &mut pixels);
+        let mut sc = luc::show::scene(n); if a.len() > 6 { sc.overlay = 1.0; } renderer.frame(&sc, n, (w, h), &q, &mut pixels);
         eprint!("{:.1} ", t.elapsed().as_secs_f64() * 1e3);
     }
     eprintln!();

@@ -1,1 +1,21 @@
-fn main() {}
+//! The lab: what a frame did, and how far adaptive sampling is from tracing every pixel.
+//!
+//! `cargo lab stats [FRAME] [QUALITY] [WxH]` prints the counters of one frame, its time, and the
+//! peak signal-to-noise ratio of its display values against the same quality with every pixel
+//! traced.
+
+mod stats;
+
+use std::process::exit;
+
+fn main() {
+    let args: Vec<String> = std::env::args().skip(1).collect();
+    let result = match args.first().map(String::as_str) {
+        Some("stats") => stats::run(&args[1..]),
+        _ => Err("usage: cargo lab stats [FRAME] [QUALITY] [WxH]".into()),
+    };
+    if let Err(message) = result {
+        eprintln!("lab: {message}");
+        exit(2);
+    }
+}

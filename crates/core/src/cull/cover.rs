@@ -6,6 +6,7 @@
 //! all corners is behind the whole cell. For a ball, the least depth over the cone around the
 //! cell; for other shapes their least depth anywhere.
 
+use super::dop::nearest_in_cone;
 use crate::render::Stage;
 use crate::trace::Shape;
 use glam::{Vec2, Vec3};
@@ -18,13 +19,7 @@ pub fn may_cover(stage: &Stage, index: usize, centre: Vec2, half: Vec2, depths: 
         Shape::Sphere(s) => {
             let c = stage.view.local(s.centre);
             let reach = half.length();
-            let e = centre.extend(1.0).normalize();
-            let distance = c.length();
-            let across = (c - e * c.dot(e)).length();
-            let (least, most) = (across - distance * reach, across + distance * reach);
-            let along = (distance * distance - most * most).max(0.0).sqrt();
-            let least = least.max(0.0);
-            let front = along - (s.radius * s.radius - least * least).max(0.0).sqrt();
+            let front = nearest_in_cone(c, s.radius, centre.extend(1.0).normalize(), reach);
             let widest = centre.length() + reach;
             front / (1.0 + widest * widest).sqrt() < deepest * 1.000_01
         }

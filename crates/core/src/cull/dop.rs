@@ -56,6 +56,16 @@ pub struct Dop {
     pub unbounded: bool,
 }
 
+/// A lower bound of the distance at which rays from the eye may meet the ball at `c`, for rays
+/// within an angle of sine at most `reach` around the unit direction `e`.
+pub fn nearest_in_cone(c: Vec3, radius: f32, e: Vec3, reach: f32) -> f32 {
+    let distance = c.length();
+    let across = (c - e * c.dot(e)).length();
+    let (least, most) = ((across - distance * reach).max(0.0), across + distance * reach);
+    let along = (distance * distance - most * most).max(0.0).sqrt();
+    along - (radius * radius - least * least).max(0.0).sqrt()
+}
+
 /// Extents of the ball at `c` (view coordinates) along axes; `c.z > r`.
 fn ball_extents(x: F, y: F, c: Vec3, r: f32) -> (F, F) {
     let r = r + 2e-6 * (r + c.abs().max_element());
@@ -90,6 +100,17 @@ impl Dop {
         Dop { axis_x: cos * x - sin * y, axis_y: sin * x + cos * y, ..Dop::NOWHERE }
     }
 
+    /// The same with two axes turned to be normal to these edges.
+    fn with_edges(direction: Vec2, edges: [Vec2; 2]) -> Dop {
+        let mut dop = Dop::along(direction);
+        for (lane, edge) in [3, 5].into_iter().zip(edges) {
+            let n = edge.perp().normalize_or(Vec2::X);
+            dop.axis_x.as_mut_array()[lane] = n.x;
+            dop.axis_y.as_mut_array()[lane] = n.y;
+        }
+        dop
+    }
+
     /// Bound of the ball at `c`, view coordinates.
     fn ball(c: Vec3, r: f32) -> Dop {
         if c.z + r < 0.0 {
@@ -103,9 +124,8 @@ impl Dop {
         Dop { lo, hi, near: c.z - r, unbounded: false, ..dop }
     }
 
-    /// Bound of the convex hull of points (view coordinates), one axis along `direction`.
-    fn hull(direction: Vec2, points: impl Iterator<Item = Vec3>) -> Dop {
-        let mut dop = Dop::along(direction);
+    /// Bounds the convex hull of points (view coordinates) along the axes given.
+    fn hull(mut dop: Dop, points: impl Iterator<Item = Vec3>) -> Dop {
         for p in points {
             if p.z < NEAR {
                 return Dop::EVERYWHERE;
@@ -136,7 +156,11 @@ impl Dop {
             let (centre, r) = if k < 16 { (a, ra) } else { (b, rb) };
             view.local(centre + corner(k & 15) * r)
         });
-        Dop::hull(flat(b) - flat(a), points)
+        // The hull's long sides run about from rim to rim, where it is widest across the axis.
+        let along = flat(b) - flat(a);
+        let side = view.world_from_view * along.perp().normalize_or(Vec2::X).extend(0.0);
+        let edge = |sign: f32| flat(b + side * (rb * sign)) - flat(a + side * (ra * sign));
+        Dop::hull(Dop::with_edges(along, [edge(1.0), edge(-1.0)]), points)
     }
 
     /// Bound of an infinite bar: its part well in front of the eye, or everything if it passes
@@ -188,7 +212,7 @@ impl Dop {
                 let longest = edges
                     .into_iter()
                     .fold(Vec2::ZERO, |m, e| if e.length_squared() > m.length_squared() { e } else { m });
-                Dop::hull(longest, [a, b, c].into_iter())
+                Dop::hull(Dop::with_edges(longest, [edges[0], edges[1]]), [a, b, c].into_iter())
             }
         }
     }
@@ -201,19 +225,34 @@ impl Dop {
         ((e + h).simd_ge(self.lo) & (e - h).simd_le(self.hi)).all()
     }
 
-    /// Whether the shape may hide a ball at `c` (view coordinates), or part of it, from the eye.
+    /// Whether the shape's bound meets that of a ball at `c` (view coordinates).
     pub fn meets_ball(&self, c: Vec3, r: f32) -> bool {
-        if self.unbounded {
-            return true;
-        }
-        if c.length() + r < self.near {
-            return false;
-        }
         if c.z < r * 1.001 + NEAR {
             // The ball reaches the eye's plane: only what is all behind the eye is surely apart.
-            return c.z + r >= 0.0 && self.near < f32::INFINITY;
+            return c.z + r >= 0.0;
         }
-        let (lo, hi) = ball_extents(self.axis_x, self.axis_y, c, r);
+        self.meets_extents(ball_extents(self.axis_x, self.axis_y, c, r))
+    }
+
+    /// Whether the shape's bound meets that of points (view coordinates) grown by `slack`.
+    pub fn meets_hull(&self, points: &[Vec3], slack: f32) -> bool {
+        let (mut lo, mut hi) = (F::splat(f32::INFINITY), F::splat(f32::NEG_INFINITY));
+        for p in points {
+            if p.z < slack + NEAR {
+                return true;
+            }
+            let scale = 1.0 / p.z;
+            let e = (self.axis_x * F::splat(p.x) + self.axis_y * F::splat(p.y)) * F::splat(scale);
+            // A step of `slack` moves the projection by slack / z across and |e| slack / z along.
+            let slack = (e.abs() + F::ONE) * F::splat(slack * 1.1 * scale);
+            lo = lo.fast_min(e - slack);
+            hi = hi.fast_max(e + slack);
+        }
+        self.meets_extents((lo, hi))
+    }
+
+    #[inline(always)]
+    fn meets_extents(&self, (lo, hi): (F, F)) -> bool {
         (lo.simd_le(self.hi) & hi.simd_ge(self.lo)).all()
     }
 }

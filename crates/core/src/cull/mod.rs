@@ -6,4 +6,4 @@ mod shaft;
 
 pub use cover::may_cover;
 pub use dop::{Dop, View, dops};
-pub use shaft::{Shaft, occluders, shafts};
+pub use shaft::{Region, Shaft, occluders, shafts};

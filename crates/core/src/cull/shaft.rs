@@ -3,7 +3,7 @@
 //! For each lamp and shape a view from the lamp towards the shape, with the shape's bound in it.
 //! A shape whose bound misses the bound of the points can't shadow any of them.
 
-use super::dop::{Dop, View};
+use super::dop::{Dop, View, nearest_in_cone};
 use crate::scene::Scene;
 use crate::shade::Lamp;
 use crate::trace::Shape;
@@ -41,28 +41,70 @@ pub fn shafts(scene: &Scene, lamp: &Lamp) -> Vec<Shaft> {
         .collect()
 }
 
-/// Candidate mask of the shapes that may hide some of the points in the ball from a lamp.
+/// Where points lie that may be in shadow.
+pub enum Region {
+    /// Anywhere in a ball: middle and radius, world.
+    Ball(Vec3, f32),
+    /// Within a distance of the hull of four points, world.
+    Patch([Vec3; 4], f32),
+}
+
+impl Region {
+    /// Middle and radius of a ball around the region.
+    fn ball(&self) -> (Vec3, f32) {
+        match *self {
+            Region::Ball(centre, radius) => (centre, radius),
+            Region::Patch([a, b, c, d], slack) => {
+                let centre = (a + b + c + d) * 0.25;
+                let r2 = [a, b, c, d].into_iter().fold(0.0_f32, |m, p| m.max((p - centre).length_squared()));
+                (centre, r2.sqrt() + slack)
+            }
+        }
+    }
+}
+
+impl Shaft {
+    /// Whether the shape may lie between the lamp and some point of the region.
+    fn may_hide(&self, shape: Shape, region: &Region, (centre, radius): (Vec3, f32)) -> bool {
+        if let Shape::Plane(p) = shape {
+            let lamp_side = p.normal.dot(self.view.origin - p.point);
+            let points_side = p.normal.dot(centre - p.point);
+            let slack = radius + 1e-5 * (centre.abs().max_element() + p.point.abs().max_element());
+            return points_side.abs() <= slack || (lamp_side > 0.0) != (points_side > 0.0);
+        }
+        let c = self.view.local(centre);
+        let farthest = c.length() + radius;
+        if self.dop.unbounded {
+            return true;
+        }
+        if farthest < self.dop.near {
+            return false;
+        }
+        let meets = match region {
+            Region::Ball(..) => self.dop.meets_ball(c, radius),
+            Region::Patch(points, slack) => self.dop.meets_hull(&points.map(|p| self.view.local(p)), *slack),
+        };
+        if let (true, Shape::Sphere(s)) = (meets, shape) {
+            let distance = c.length();
+            let reach = radius / (distance - radius).max(1e-6);
+            let middle = self.view.local(s.centre);
+            return nearest_in_cone(middle, s.radius, c / distance, reach) <= farthest * 1.000_01;
+        }
+        meets
+    }
+}
+
+/// Candidate mask of the shapes that may hide some of the region's points from a lamp.
 ///
 /// `own` is the shape that all the points lie on, if it is one: a plane, triangle or ball doesn't
 /// shadow the side of itself that faces the lamp, and points that face away are not asked about.
-pub fn occluders(scene: &Scene, shafts: &[Shaft], own: Option<usize>, centre: Vec3, radius: f32) -> u64 {
+pub fn occluders(scene: &Scene, shafts: &[Shaft], own: Option<usize>, region: &Region) -> u64 {
+    let ball = region.ball();
     let mut mask = 0;
     for (i, shaft) in shafts.iter().enumerate() {
         let shape = scene.shape(i);
         let convex = matches!(shape, Shape::Sphere(_) | Shape::Plane(_) | Shape::Triangle(_));
-        if convex && own == Some(i) {
-            continue;
-        }
-        let may = match shape {
-            Shape::Plane(p) => {
-                let lamp_side = p.normal.dot(shaft.view.origin - p.point);
-                let points_side = p.normal.dot(centre - p.point);
-                let slack = radius + 1e-5 * (centre.abs().max_element() + p.point.abs().max_element());
-                points_side.abs() <= slack || (lamp_side > 0.0) != (points_side > 0.0)
-            }
-            _ => shaft.dop.meets_ball(shaft.view.local(centre), radius),
-        };
-        if may {
+        if !(convex && own == Some(i)) && shaft.may_hide(shape, region, ball) {
             mask |= 1 << (i & 63);
         }
     }

@@ -5,7 +5,7 @@
 //! any list, so its sum doesn't depend on what else is in the list.
 
 use crate::counters::{Counter, Counters};
-use crate::cull::occluders;
+use crate::cull::{Region, occluders};
 use crate::math::hash::mix;
 use crate::math::lanes::{self, F, V3};
 use crate::render::Stage;
@@ -105,7 +105,7 @@ impl Boxes {
                 let (centre, radius) = ((lo + hi) * 0.5, (hi - lo).length() * 0.5);
                 let reach = radius + centre.length() + stage.scene.camera.position.length();
                 let slack = 4e-6 * reach;
-                *mask |= occluders(stage.scene, shafts, Some(shape), centre, radius + slack);
+                *mask |= occluders(stage.scene, shafts, Some(shape), &Region::Ball(centre, radius + slack));
             }
         }
         masks
