@@ -258,3 +258,6 @@ impl BitAnd<F> for V3 {
         V3::new(self.x & mask, self.y & mask, self.z & mask)
     }
 }
+
+#[cfg(test)]
+mod tests;
