@@ -96,14 +96,20 @@ pub fn difference_of_products(a: F, b: F, c: F, d: F) -> F {
     #[cfg(all(target_arch = "x86_64", target_feature = "avx"))]
     {
         use safe_arch::*;
-        let halves = |v: F| {
-            let v = m256(v.into());
-            [cast_to_m128_from_m256(v), extract_m128_from_m256::<1>(v)].map(convert_to_m256d_from_m128)
-        };
-        let (a, b, c, d) = (halves(a), halves(b), halves(c), halves(d));
-        let half =
-            |i: usize| convert_to_m128_from_m256d(sub_m256d(mul_m256d(a[i], b[i]), mul_m256d(c[i], d[i])));
-        F::from(set_m128_m256(half(1), half(0)).0)
+        let (a, b, c, d) = (m256(a.into()), m256(b.into()), m256(c.into()), m256(d.into()));
+        let low = difference_of_products_x4(
+            cast_to_m128_from_m256(a),
+            cast_to_m128_from_m256(b),
+            cast_to_m128_from_m256(c),
+            cast_to_m128_from_m256(d),
+        );
+        let high = difference_of_products_x4(
+            extract_m128_from_m256::<1>(a),
+            extract_m128_from_m256::<1>(b),
+            extract_m128_from_m256::<1>(c),
+            extract_m128_from_m256::<1>(d),
+        );
+        F::from(set_m128_m256(high, low).0)
     }
     #[cfg(not(all(target_arch = "x86_64", target_feature = "avx")))]
     {
@@ -111,6 +117,19 @@ pub fn difference_of_products(a: F, b: F, c: F, d: F) -> F {
         let (a, b, c, d) = (wide(a), wide(b), wide(c), wide(d));
         F::new(core::array::from_fn(|i| (a[i] * b[i] - c[i] * d[i]) as f32))
     }
+}
+
+#[cfg(all(target_arch = "x86_64", target_feature = "avx"))]
+#[inline(always)]
+fn difference_of_products_x4(
+    a: safe_arch::m128,
+    b: safe_arch::m128,
+    c: safe_arch::m128,
+    d: safe_arch::m128,
+) -> safe_arch::m128 {
+    use safe_arch::convert_to_m256d_from_m128 as wide;
+    // Packed operators on f64: one rounding each.
+    safe_arch::convert_to_m128_from_m256d(wide(a) * wide(b) - wide(c) * wide(d))
 }
 
 /// Eight vectors.

@@ -85,12 +85,11 @@ fn sin_cos_kernel(x: f64) -> (f64, f64) {
         poly(z, [-0.49999999969106984, 0.041666650639724655, -0.0013887588896733915, 2.4463754730095443e-05]);
     // This form of the sine keeps the sign of −0.
     let (sin, cos) = (r * (1.0 + z * sin), 1.0 + z * cos);
-    match shifted.to_bits() & 3 {
-        0 => (sin, cos),
-        1 => (cos, -sin),
-        2 => (-sin, -cos),
-        _ => (-cos, sin),
-    }
+    // Odd quadrants swap the two; bit 1 of the quadrant negates the sine, of the next one the cosine.
+    let quadrant = shifted.to_bits();
+    let (sin, cos) = if quadrant & 1 == 0 { (sin, cos) } else { (cos, sin) };
+    let signed = |v: f64, quadrant: u64| f64::from_bits(v.to_bits() ^ (quadrant & 2) << 62);
+    (signed(sin, quadrant), signed(cos, quadrant.wrapping_add(1)))
 }
 
 /// The angle of (x, y) before rounding.
