@@ -62,7 +62,7 @@ pub fn hash_x8(pixel: U, frame: u32, dimension: u32) -> U {
     mix_x8(pixel, U::splat(hash2(frame, dimension)))
 }
 
-/// Eight [`unit`] at once, bit for bit.
+/// Eight [`unit()`] at once, bit for bit.
 #[inline(always)]
 pub fn unit_x8(bits: U) -> F {
     // 24 bits fit into the signed conversion, which is exact.

@@ -1,7 +1,7 @@
 //! Elementary functions for eight f32 at a time, in f32 arithmetic.
 //!
-//! Less exact than [`scalar`](super::scalar) and several times cheaper per number: within 4 ulp in the
-//! ranges stated, with the same bits on every machine. The reductions are those of the scalar functions;
+//! Less exact than [`scalar`](super::scalar) and several times cheaper per number: an error of 1 to 3 ulp
+//! (more only for `pow` with large exponents), and the same bits on every machine. The reductions are those of the scalar functions;
 //! the polynomials are minimax fits to f32 accuracy. No result is NaN except where stated, so that one
 //! bad sample cannot spread through a filter.
 
@@ -84,8 +84,8 @@ pub fn log2(x: F) -> F {
 
 /// x^y for x ≥ 0 and finite y. Error ≤ 2 + 2.5·min(|y|, |y·log₂ x|) ulp, ≤ 2 for |y| ≤ 1.
 ///
-/// Subnormal and negative x and NaN count as 0; `pow(0, y)` is 0 for y > 0 and inf for y < 0;
-/// `pow(x, 0)` and `pow(1, y)` are 1. Results below 2⁻¹²⁶ are 0, inf counts as 2¹²⁸.
+/// Subnormal and negative x and NaN count as 0, inf as 2¹²⁸; `pow(0, y)` is 0 for y > 0 and inf for
+/// y < 0; `pow(x, 0)` and `pow(1, y)` are 1. Results below 2⁻¹²⁶ are 0, and so is that for y = NaN.
 #[inline(never)]
 pub fn pow(x: F, y: F) -> F {
     let (k, rest) = log2_parts(x);
