@@ -1,9 +1,9 @@
 //! Elementary functions for eight f32 at a time, in f32 arithmetic.
 //!
 //! Less exact than [`scalar`](super::scalar) and several times cheaper per number: an error of 1 to 3 ulp
-//! (more only for `pow` with large exponents), and the same bits on every machine. The reductions are those of the scalar functions;
-//! the polynomials are minimax fits to f32 accuracy. No result is NaN except where stated, so that one
-//! bad sample cannot spread through a filter.
+//! (more only for `pow` with large exponents), and the same bits in every build. The reductions are those
+//! of the scalar functions; the polynomials are minimax fits to f32 accuracy. No result is NaN except
+//! where stated, so that one bad sample cannot spread through a filter.
 
 use super::lanes::{F, INFINITY, ONE, U, max, min, select, splat};
 
