@@ -1,11 +1,11 @@
 //! Elementary functions for eight f32 at a time, in f32 arithmetic.
 //!
-//! Less exact than [`scalar`](super::scalar) and several times cheaper per number: within 4 ulp in the
-//! ranges stated, with the same bits on every machine. The reductions are those of the scalar functions;
-//! the polynomials are minimax fits to f32 accuracy. No result is NaN except where stated, so that one
-//! bad sample cannot spread through a filter.
+//! Less exact than [`scalar`](super::scalar) and several times cheaper per number: an error of 1 to 3 ulp
+//! (more only for `pow` with large exponents), and the same bits in every build. The reductions are those
+//! of the scalar functions; the polynomials are minimax fits to f32 accuracy. No result is NaN except
+//! where stated, so that one bad sample cannot spread through a filter.
 
-use super::lanes::{F, INFINITY, ONE, U, select, splat};
+use super::lanes::{F, INFINITY, ONE, U, max, min, select, splat};
 
 /// Adding this to |t| < 2²¹ rounds t to the nearest integer and leaves it in the low bits.
 const ROUND: F = splat(12_582_912.0); // 1.5·2²³
@@ -36,16 +36,16 @@ fn exp2_kernel(shifted: F, r: F) -> F {
     F::from_bits((ONE + r * fraction).to_bits() + (shifted.to_bits() << 23u32))
 }
 
-/// 2^x. Error ≤ 1.5 ulp, exact for integers; inf from 128, 0 below −126 and for NaN.
+/// 2^x. Error ≤ 1.2 ulp, exact for integers; inf from 128, 0 below −126 and for NaN.
 #[inline(never)]
 pub fn exp2(x: F) -> F {
-    let t = x.fast_max(splat(MIN_EXPONENT)).fast_min(splat(128.0));
+    let t = min(max(x, splat(MIN_EXPONENT)), splat(128.0));
     let shifted = t + ROUND;
     // At 128 the kernel's exponent field is that of inf.
     x.simd_ge(splat(MIN_EXPONENT)) & exp2_kernel(shifted, t - (shifted - ROUND))
 }
 
-/// e^x. Error ≤ 2 ulp, `exp(0)` is 1; inf above 88.72, 0 below −87.33 and for NaN.
+/// e^x. Error ≤ 1.4 ulp, `exp(0)` is 1; inf above 88.72, 0 below −87.33 and for NaN.
 #[inline(never)]
 pub fn exp(x: F) -> F {
     // ln 2 as 15 bits, whose products with n are exact, and the rest.
@@ -54,7 +54,7 @@ pub fn exp(x: F) -> F {
     const LOG2_E: F = splat(core::f32::consts::LOG2_E);
     const LOWEST: F = splat(-87.33654);
     const HIGHEST: F = splat(88.72283);
-    let t = x.fast_max(LOWEST).fast_min(HIGHEST);
+    let t = min(max(x, LOWEST), HIGHEST);
     let shifted = t * LOG2_E + ROUND;
     let n = shifted - ROUND;
     let r = (t - n * LN2_HIGH) - n * LN2_LOW;
@@ -62,29 +62,47 @@ pub fn exp(x: F) -> F {
     x.simd_ge(LOWEST) & value
 }
 
-/// log₂ x. Error ≤ 3 ulp for normal positive x, exact for powers of two; −inf for everything else below
-/// (zero, subnormal, negative) and NaN; 128 for inf.
-#[inline(never)]
-pub fn log2(x: F) -> F {
+/// log₂ x as an integer and a rest in [−½, ½], for normal x > 0; finite for all others.
+#[inline(always)]
+fn log2_parts(x: F) -> (F, F) {
     const SQRT_HALF: U = U::splat(0x3f35_04f3);
     // x = 2^k·m with m in [√½, √2).
     let k = (x.to_bits() - SQRT_HALF).cast_signed() >> 23u32;
     let m = F::from_bits(x.to_bits() - (k.cast_unsigned() << 23u32));
     let s = (m - ONE) / (m + ONE);
     let odd = poly(s * s, [2.8853900798033365, 0.96179883880211, 0.5767151860190234, 0.43171769745887384]);
-    let value = F::from_i32x8(k) + s * odd;
-    select(x.simd_ge(splat(f32::MIN_POSITIVE)), value, -INFINITY)
+    (F::from_i32x8(k), s * odd)
 }
 
-/// x^y for x ≥ 0. Error ≤ 3 + 2·|y·log₂ x| ulp; subnormal and negative x and NaN count as 0. Results
-/// below 2⁻¹²⁶ are 0. `pow(0, y)` is 0 for y > 0, inf for y < 0; `pow(x, 0)` is 1.
+/// log₂ x. Error ≤ 3 ulp for normal positive x, exact for powers of two; −inf for everything below (zero,
+/// subnormal, negative) and for NaN; 128 for inf.
+#[inline(never)]
+pub fn log2(x: F) -> F {
+    let (k, rest) = log2_parts(x);
+    select(x.simd_ge(splat(f32::MIN_POSITIVE)), k + rest, -INFINITY)
+}
+
+/// x^y for x ≥ 0 and finite y. Error ≤ 2 + 2.5·min(|y|, |y·log₂ x|) ulp, ≤ 2 for |y| ≤ 1.
+///
+/// Subnormal and negative x and NaN count as 0, inf as 2¹²⁸; `pow(0, y)` is 0 for y > 0 and inf for
+/// y < 0; `pow(x, 0)` and `pow(1, y)` are 1. Results below 2⁻¹²⁶ are 0, and so is that for y = NaN.
 #[inline(never)]
 pub fn pow(x: F, y: F) -> F {
-    select(y.simd_eq(splat(0.0)), ONE, exp2(y * log2(x)))
+    let (k, rest) = log2_parts(x);
+    // Large enough to leave the range for any normal y, and still 0 for y = 0.
+    let k = select(x.simd_ge(splat(f32::MIN_POSITIVE)), k, splat(-f32::MAX));
+    // k times the upper 12 bits of y is exact, so no digits are lost to the integer part.
+    let high = F::from_bits(y.to_bits() & U::splat(0xffff_f000));
+    let whole = high * k;
+    let rest = y * rest + (y - high) * k;
+    let t = whole + rest;
+    let shifted = min(max(t, splat(MIN_EXPONENT)), splat(128.0)) + ROUND;
+    let value = exp2_kernel(shifted, (whole - (shifted - ROUND)) + rest);
+    t.simd_ge(splat(MIN_EXPONENT)) & select(t.simd_ge(splat(128.0)), INFINITY, value)
 }
 
-/// (sin x, cos x), x in radians. Error ≤ 2 ulp or 2⁻³⁵ (whichever is larger) for |x| ≤ 1600; in [−1, 1] for
-/// any finite x; NaN for inf and NaN.
+/// (sin x, cos x), x in radians. Error ≤ 2.5 ulp for |x| ≤ 1600, but for results below 2⁻²⁰, whose error
+/// is ≤ 2⁻⁴². In [−1, 1] for any finite x; NaN for inf and NaN.
 #[inline(never)]
 pub fn sin_cos(x: F) -> (F, F) {
     // π/2 as 14 + 14 + 24 bits: products with n < 2¹⁰ are exact in the first two.
@@ -94,8 +112,8 @@ pub fn sin_cos(x: F) -> (F, F) {
     let shifted = x * splat(core::f32::consts::FRAC_2_PI) + ROUND;
     let n = shifted - ROUND;
     let r = ((x - n * HIGH) - n * MIDDLE) - n * LOW;
-    // The clamp only acts where |x| is so large that the remainder is lost anyway.
-    let r = r.fast_clamp(splat(-1.0), ONE);
+    // The clamp only acts where |x| is so large that the remainder is lost anyway, and lets NaN through.
+    let r = min(ONE, max(splat(-1.0), r));
     let z = r * r;
     let sin = poly(z, [-0.16666664661714697, 0.008332748154085032, -0.00019587865702101875]);
     let cos =
@@ -107,3 +125,6 @@ pub fn sin_cos(x: F) -> (F, F) {
     let sign = |q: U| F::from_bits((q & U::splat(2)) << 30u32);
     (select(odd, cos, sin) ^ sign(quadrant), select(odd, sin, cos) ^ sign(quadrant + U::splat(1)))
 }
+
+#[cfg(test)]
+mod tests;

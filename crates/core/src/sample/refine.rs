@@ -14,11 +14,11 @@ use super::interpolate::fill;
 use super::tile::{Borders, Kind, Record, TILE, Tile};
 use super::wave::{Position, Sample, Scratch, trace};
 use crate::counters::Counter;
-use crate::cull::{may_cover, occluders};
+use crate::cull::{Region, may_cover, occluders};
 use crate::render::Stage;
 use crate::shade::MAX_LAMPS;
 use crate::trace::{BLOCKED, Shape};
-use glam::{Vec2, Vec3};
+use glam::Vec2;
 
 /// Side of the grid of a tile's samples: one more than its pixels.
 const GRID: usize = TILE + 1;
@@ -135,7 +135,7 @@ fn shadow_casters(stage: &Stage, samples: &[Sample]) -> [u64; MAX_LAMPS] {
     let Some(some) = hits().next() else { return masks };
     let (lo, hi) = hits().fold((some, some), |(lo, hi), p| (lo.min(p), hi.max(p)));
     for (mask, shafts) in masks.iter_mut().zip(&stage.shafts) {
-        *mask = occluders(stage.scene, shafts, None, (lo + hi) * 0.5, (hi - lo).length() * 0.5);
+        *mask = occluders(stage.scene, shafts, None, &Region::Ball((lo + hi) * 0.5, (hi - lo).length() * 0.5));
     }
     masks
 }
@@ -208,19 +208,20 @@ impl Surroundings {
         if own == usize::MAX {
             return false;
         }
-        let (lo, hi) = known
-            .corners
-            .iter()
-            .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(lo, hi), s| (lo.min(s.point), hi.max(s.point)));
-        let (centre, radius) = ((lo + hi) * 0.5, (hi - lo).length() * 0.5);
-        for ((lamp, shafts), &mask) in stage.shafts.iter().enumerate().zip(&self.shadows) {
+        let points = known.corners.map(|s| s.point);
+        // Between the corners a curved surface bulges out of their hull.
+        let flat = matches!(stage.scene.shape(own), Shape::Plane(_) | Shape::Triangle(_));
+        let across = (points[3] - points[0]).length().max((points[2] - points[1]).length());
+        let region = Region::Patch(points, if flat { 0.0 } else { 0.1 * across });
+        let material = &stage.scene.materials[stage.scene.shape(own).material()];
+        for (lamp, shafts) in stage.shafts.iter().enumerate() {
             let lit = known.corners.iter().all(|s| s.codes[lamp] != BLOCKED);
-            if mask == 0 || !lit {
+            if self.shadows[lamp] == 0 || !lit || !stage.lamps[lamp].lights(material) {
                 continue;
             }
             // A body that already colours the light of all samples is known to be there.
             let crossed = known.corners[0].codes[lamp] as u32;
-            let may = occluders(stage.scene, shafts, Some(own), centre, radius) & mask;
+            let may = occluders(stage.scene, shafts, Some(own), &region) & self.shadows[lamp];
             for (i, &bit) in stage.bits.iter().enumerate() {
                 let known_tint = bit > 0.0 && crossed & bit as u32 != 0;
                 let unbounded = matches!(stage.scene.shape(i), Shape::Plane(_));

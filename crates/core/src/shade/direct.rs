@@ -97,10 +97,11 @@ pub fn direct(
     let zero = F::ZERO;
     let mut sum = Lit { irradiance: V3::ZERO, highlight: V3::ZERO };
     let specular = s.colour(Channel::Specular);
-    let takes = s.value(Channel::Diffuse) + specular.x + specular.y + specular.z;
+    let shiny = (specular.x + specular.y + specular.z).simd_gt(zero);
+    let diffuse = s.value(Channel::Diffuse).simd_gt(zero);
     // The inner side of glass has no highlights of lamps: they would be seen through itself.
     let behind = s.inside & s.value(Channel::Transparency).simd_gt(zero);
-    let active = active & takes.simd_gt(zero) & !behind;
+    let active = active & (diffuse | shiny) & !behind;
     if !active.any() {
         return sum;
     }
@@ -113,7 +114,11 @@ pub fn direct(
         let l = to_lamp * (F::ONE / d2.sqrt());
         let n_l = s.normal.dot(l);
         let reach = lamp.lobe(-l);
-        let wanted = active & n_l.simd_gt(zero) & facing.dot(l).simd_gt(zero) & reach.simd_gt(zero);
+        // Mirrors show shining rectangles themselves, in place of a highlight.
+        let plain = if lamp.is_emitter { diffuse | (shiny & !mirrors) } else { diffuse | shiny };
+        let wanted = active
+            & plain
+            & n_l.simd_gt(zero) & facing.dot(l).simd_gt(zero) & reach.simd_gt(zero);
         if let (Some(code), Visibility::Trace(candidates)) = (codes.get_mut(k), &visibility) {
             *code = zero;
             if candidates[k] != 0 && wanted.any() {

@@ -1,7 +1,7 @@
 //! Lamps as shading sees them: points, spots and shining rectangles in one form.
 
 use crate::math::lanes::{F, V3};
-use crate::scene::{LightKind, Scene};
+use crate::scene::{LightKind, Material, Scene};
 use glam::Vec3;
 use std::f32::consts::PI;
 
@@ -54,6 +54,13 @@ pub fn lamps(scene: &Scene) -> Vec<Lamp> {
 }
 
 impl Lamp {
+    /// Whether a material shows this lamp's direct light at all. Mirrors show shining rectangles
+    /// themselves, in place of a highlight.
+    pub fn lights(&self, material: &Material) -> bool {
+        let highlight = material.specular.max_element() > 0.0;
+        material.diffuse > 0.0 || (highlight && !(self.is_emitter && material.reflection > 0.0))
+    }
+
     /// Share of the lamp's light that goes in unit direction `d` away from it.
     #[inline(always)]
     pub fn lobe(&self, d: V3) -> F {
