@@ -6,9 +6,13 @@ fn main() {
     let (w, h): (u32, u32) = (a[3].parse().unwrap(), a[4].parse().unwrap());
     let mut renderer = luc_core::render::Renderer::default();
     let mut pixels = vec![0; (w * h) as usize];
-    for _ in 0..8 {
+    for _ in 0..std::env::var("N").map_or(8, |n| n.parse().unwrap()) {
         let t = std::time::Instant::now();
-        let mut sc = luc::show::scene(n); if a.len() > 6 { sc.overlay = 1.0; } renderer.frame(&sc, n, (w, h), &q, &mut pixels);
+        let mut sc = luc::show::scene(n);
+        if a.len() > 6 {
+            sc.overlay = 1.0;
+        }
+        renderer.frame(&sc, n, (w, h), &q, &mut pixels);
         eprint!("{:.1} ", t.elapsed().as_secs_f64() * 1e3);
     }
     eprintln!();

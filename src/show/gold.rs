@@ -23,7 +23,7 @@ fn bar(a: Vec3, b: Vec3, turn: f32, material: usize) -> Cylinder {
 pub fn scene(frame: u64) -> Scene {
     let t = seconds(frame);
     let breathe = |period, phase| 0.25 * swing(t, period, phase);
-    let gold = |x, y, z, radius| Sphere { centre: v(x, y, z), radius, material: 0, blend: 0.42 };
+    let gold = |x, y, z, radius| Sphere { centre: v(x, y, z), radius, material: 0, blend: 0.8 };
     let turn = 24.5 / 360.0 + degrees(70.0) / std::f32::consts::TAU * (smooth(t / LENGTH) - 0.25);
     let target = v(0.35, 1.18, 0.0);
     let position = target + orbit(turn, 9.97, 1.52 + 0.5 * swing(t, 19.0, 0.0));

@@ -35,7 +35,7 @@ pub fn scene(frame: u64) -> Scene {
     let target = v(1.5, 2.4, 0.0);
     let away = orbit(turn / std::f32::consts::TAU, distance, -0.05);
 
-    let steel = Material { specular: v(0.35, 0.47, 0.66), exponent: 40.0, ..metal(v(0.2, 0.27, 0.38), 0.27) };
+    let steel = Material { specular: v(0.35, 0.47, 0.66), exponent: 18.0, ..metal(v(0.2, 0.27, 0.38), 0.27) };
     Scene {
         camera: Camera { position: target + away, target, roll: degrees(1.5), fov: degrees(43.0) },
         background: Background {
@@ -61,7 +61,7 @@ pub fn scene(frame: u64) -> Scene {
             Sphere { centre: ember, radius: 0.2, material: 3, blend: 0.0 },
             Sphere { centre: water, radius: 0.82, material: 4, blend: 0.0 },
         ],
-        planes: vec![Plane { point: Vec3::ZERO, normal: Vec3::Y, material: 5 }],
+        planes: vec![Plane { point: Vec3::ZERO, normal: Vec3::Y, reach: 26.0, material: 5 }],
         cones: vec![
             Cone::between((v(0.0, 2.1, 0.0), 0.34), (Vec3::ZERO, 1.3), [false, false], 0),
             Cone::between(

@@ -31,7 +31,7 @@ pub fn may_cover(stage: &Stage, index: usize, centre: Vec2, half: Vec2, depths: 
                 [Vec2::new(-1.0, 1.0), Vec2::new(1.0, 1.0), Vec2::new(-1.0, -1.0), Vec2::new(1.0, -1.0)];
             signs.into_iter().zip(depths).any(|(sign, &depth)| {
                 let d: Vec3 = (centre + sign * half).extend(1.0);
-                n.dot(d) / height * depth > 0.999_99
+                n.dot(d) / height * depth > 1.000_01
             })
         }
         _ => true,

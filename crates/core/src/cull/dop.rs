@@ -225,35 +225,26 @@ impl Dop {
         ((e + h).simd_ge(self.lo) & (e - h).simd_le(self.hi)).all()
     }
 
-    /// Whether the shape's bound meets that of a ball at `c` (view coordinates).
-    pub fn meets_ball(&self, c: Vec3, r: f32) -> bool {
-        if c.z < r * 1.001 + NEAR {
-            // The ball reaches the eye's plane: only what is all behind the eye is surely apart.
-            return c.z + r >= 0.0;
-        }
-        self.meets_extents(ball_extents(self.axis_x, self.axis_y, c, r))
-    }
-
-    /// Whether the shape's bound meets that of points (view coordinates) grown by `slack`.
+    /// Whether the pyramid from the eye around the shape comes within `slack` of the hull of
+    /// `points` (view coordinates).
+    ///
+    /// Each axis gives two planes through the eye, a·p = lo z and a·p = hi z. The hull is apart if
+    /// all points are farther than `slack` on the outer side of one of them, or behind the eye.
     pub fn meets_hull(&self, points: &[Vec3], slack: f32) -> bool {
-        let (mut lo, mut hi) = (F::splat(f32::INFINITY), F::splat(f32::NEG_INFINITY));
-        for p in points {
-            if p.z < slack + NEAR {
-                return true;
-            }
-            let scale = 1.0 / p.z;
-            let e = (self.axis_x * F::splat(p.x) + self.axis_y * F::splat(p.y)) * F::splat(scale);
-            // A step of `slack` moves the projection by slack / z across and |e| slack / z along.
-            let slack = (e.abs() + F::ONE) * F::splat(slack * 1.1 * scale);
-            lo = lo.fast_min(e - slack);
-            hi = hi.fast_max(e + slack);
+        if self.unbounded || self.near == f32::INFINITY {
+            return self.unbounded;
         }
-        self.meets_extents((lo, hi))
-    }
-
-    #[inline(always)]
-    fn meets_extents(&self, (lo, hi): (F, F)) -> bool {
-        (lo.simd_le(self.hi) & hi.simd_ge(self.lo)).all()
+        let slack8 = F::splat(slack);
+        let room = |bound: F| slack8 * (F::ONE + bound * bound).sqrt();
+        let (inside_lo, inside_hi) = (self.lo, self.hi);
+        let (mut over_lo, mut under_hi, mut ahead) = (F::ZERO, F::ZERO, false);
+        for p in points {
+            let (e, z) = (self.axis_x * F::splat(p.x) + self.axis_y * F::splat(p.y), F::splat(p.z));
+            over_lo |= (e - inside_lo * z).simd_ge(-room(inside_lo));
+            under_hi |= (e - inside_hi * z).simd_le(room(inside_hi));
+            ahead |= p.z > -slack;
+        }
+        ahead && (over_lo & under_hi).all()
     }
 }
 

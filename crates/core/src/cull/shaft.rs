@@ -66,11 +66,21 @@ impl Region {
 impl Shaft {
     /// Whether the shape may lie between the lamp and some point of the region.
     fn may_hide(&self, shape: Shape, region: &Region, (centre, radius): (Vec3, f32)) -> bool {
-        if let Shape::Plane(p) = shape {
-            let lamp_side = p.normal.dot(self.view.origin - p.point);
-            let points_side = p.normal.dot(centre - p.point);
-            let slack = radius + 1e-5 * (centre.abs().max_element() + p.point.abs().max_element());
-            return points_side.abs() <= slack || (lamp_side > 0.0) != (points_side > 0.0);
+        let plane = match shape {
+            Shape::Plane(p) => Some((p.point, p.normal)),
+            Shape::Triangle(t) => {
+                let [a, b, c] = t.corners;
+                Some((a, (b - a).cross(c - a).normalize_or_zero()))
+            }
+            _ => None,
+        };
+        if let Some((point, normal)) = plane {
+            let lamp = normal.dot(self.view.origin - point);
+            let points = normal.dot(centre - point);
+            let slack = radius + 1e-5 * (centre.abs().max_element() + point.abs().max_element());
+            if points.abs() > slack && (lamp > 0.0) == (points > 0.0) {
+                return false;
+            }
         }
         let c = self.view.local(centre);
         let farthest = c.length() + radius;
@@ -81,7 +91,7 @@ impl Shaft {
             return false;
         }
         let meets = match region {
-            Region::Ball(..) => self.dop.meets_ball(c, radius),
+            Region::Ball(..) => self.dop.meets_hull(&[c], radius),
             Region::Patch(points, slack) => self.dop.meets_hull(&points.map(|p| self.view.local(p)), *slack),
         };
         if let (true, Shape::Sphere(s)) = (meets, shape) {
@@ -94,14 +104,18 @@ impl Shaft {
     }
 }
 
-/// Candidate mask of the shapes that may hide some of the region's points from a lamp.
+/// Candidate mask of the shapes that may hide some of the region's points from a lamp, out of the
+/// shapes in the mask `among`.
 ///
 /// `own` is the shape that all the points lie on, if it is one: a plane, triangle or ball doesn't
 /// shadow the side of itself that faces the lamp, and points that face away are not asked about.
-pub fn occluders(scene: &Scene, shafts: &[Shaft], own: Option<usize>, region: &Region) -> u64 {
+pub fn occluders(scene: &Scene, shafts: &[Shaft], among: u64, own: Option<usize>, region: &Region) -> u64 {
     let ball = region.ball();
     let mut mask = 0;
     for (i, shaft) in shafts.iter().enumerate() {
+        if among >> (i & 63) & 1 == 0 {
+            continue;
+        }
         let shape = scene.shape(i);
         let convex = matches!(shape, Shape::Sphere(_) | Shape::Plane(_) | Shape::Triangle(_));
         if !(convex && own == Some(i)) && shaft.may_hide(shape, region, ball) {

@@ -67,13 +67,14 @@ pub fn smooth_edges(
         for &(x, y, count) in batch {
             positions.extend((1..=count).map(|i| place(corner.0 + x, corner.1 + y, i)));
         }
-        scratch.samples.clear();
+        scratch.samples.0.clear();
         trace(stage, scratch, &positions, candidates);
         scratch.counters.add(Counter::EdgeSamples, positions.len() as u32);
-        let mut samples = scratch.samples.iter();
+        let mut next = 0;
         for &(x, y, count) in batch {
-            let more = samples.by_ref().take(count as usize);
-            let sum = more.fold(compress(tile.get(x, y)), |sum, s| sum + compress(s.colour));
+            let more = (next..).take(count as usize).map(|i| scratch.samples.get(i).colour());
+            let sum = more.fold(compress(tile.get(x, y)), |sum, c| sum + compress(c));
+            next += count as usize;
             let colour = expand(sum / (count + 1) as f32);
             tile.set(x, y, colour, Record::new(Kind::Smoothed, 1));
         }

@@ -4,9 +4,9 @@
 //! values equal, plus a bump 16 x (1-x) y (1-y) (centre - mean) through the centre sample, which
 //! vanishes on the cell's border.
 
+use super::block::Sample;
 use super::refine::{Cell, Corners};
 use super::tile::{Kind, Record, TILE, Tile};
-use super::wave::Sample;
 use crate::counters::{Counter, Counters};
 use crate::math::lanes::{F, V3};
 use crate::quality::Rung;
@@ -29,7 +29,7 @@ struct Patch {
 }
 
 impl Patch {
-    fn of(known: &Corners, value: impl Fn(&Sample) -> Vec3) -> Patch {
+    fn of(known: &Corners, value: impl Fn(Sample) -> Vec3) -> Patch {
         let [a, b, c, d] = known.corners.map(&value);
         let mean = (a + b + c + d) * 0.25;
         let bump = known.centre.map_or(Vec3::ZERO, |s| (value(s) - mean) * 16.0);
@@ -54,7 +54,7 @@ pub(super) fn fill(
     counters: &mut Counters,
 ) {
     let first = known.corners[0];
-    let same = |s: &&Sample| (s.display - first.display).abs().max_element() <= SAME;
+    let same = |s: &Sample| (s.display() - first.display()).abs().max_element() <= SAME;
     let equal = known.corners[1..].iter().chain(&known.centre).all(same);
     let kind = if equal { Kind::Filled } else { Kind::Interpolated };
     let counter = if equal { Counter::Filled } else { Counter::Interpolated };
@@ -62,20 +62,20 @@ pub(super) fn fill(
     counters.add(counter, count as u32);
     let record = Record::new(kind, cell.size);
 
-    let textured = first.id >= 0.0 && {
-        let shape = stage.scene.shape(first.id as usize >> 2);
+    let textured = first.id() >= 0.0 && {
+        let shape = stage.scene.shape(first.id() as usize >> 2);
         stage.scene.materials[shape.material()].grain > 0.0
     };
     let rung = if equal && !textured { Rung::Colour } else { stage.quality.rung };
     let scale = F::splat(1.0 / cell.size as f32);
     let shift = cell.size.trailing_zeros();
     let patch = match rung {
-        Rung::Colour => Patch::of(known, |s| s.colour),
-        Rung::Light if textured => Patch::of(known, |s| s.colour - s.irradiance * s.albedo),
-        Rung::Light => Patch::of(known, |s| s.colour),
-        Rung::Surface => Patch::of(known, |s| s.indirect),
+        Rung::Colour => Patch::of(known, |s| s.colour()),
+        Rung::Light if textured => Patch::of(known, |s| s.colour() - s.irradiance() * s.albedo()),
+        Rung::Light => Patch::of(known, |s| s.colour()),
+        Rung::Surface => Patch::of(known, |s| s.indirect()),
     };
-    let light = Patch::of(known, |s| s.irradiance);
+    let light = Patch::of(known, |s| s.irradiance());
     for base in (0..count).step_by(8) {
         let place = |lane: usize| {
             let i = base + lane;
@@ -110,34 +110,34 @@ pub(super) fn fill(
 }
 
 /// Rays through pixels, and where they meet the shape of `first` (0 where they don't).
-fn meet(stage: &Stage, first: &Sample, px: F, py: F) -> (Rays8, F) {
+fn meet(stage: &Stage, first: Sample, px: F, py: F) -> (Rays8, F) {
     let rays = Rays8 { origin: V3::splat(stage.scene.camera.position), direction: stage.directions(px, py) };
-    if first.id < 0.0 {
+    if first.id() < 0.0 {
         return (rays, F::splat(f32::INFINITY));
     }
-    let (t, _) = stage.scene.shape(first.id as usize >> 2).span(&rays).first();
-    (rays, t.simd_gt(F::ZERO).select(t, F::splat(first.depth)))
+    let (t, _) = stage.scene.shape(first.id() as usize >> 2).span(&rays).first();
+    (rays, t.simd_gt(F::ZERO).select(t, F::splat(first.depth())))
 }
 
 /// Albedo of the known shape at pixels.
-fn albedo(stage: &Stage, first: &Sample, px: F, py: F, counters: &mut Counters) -> V3 {
+fn albedo(stage: &Stage, first: Sample, px: F, py: F, counters: &mut Counters) -> V3 {
     counters.add(Counter::KnownSurfaces, 8);
     let (rays, t) = meet(stage, first, px, py);
-    let s = surface(stage.scene, &rays, t, F::splat(first.id), F::splat(stage.pixel));
+    let s = surface(stage.scene, &rays, t, F::splat(first.id()), F::splat(stage.pixel));
     s.colour(Channel::Colour)
 }
 
 /// Light from the known shape, or background, at pixels but for mirrors and glass: the visibility
 /// of the lamps is that of the sample `first`.
-fn known_surface(stage: &Stage, first: &Sample, px: F, py: F, counters: &mut Counters) -> V3 {
+fn known_surface(stage: &Stage, first: Sample, px: F, py: F, counters: &mut Counters) -> V3 {
     counters.add(Counter::KnownSurfaces, 8);
     let (rays, t) = meet(stage, first, px, py);
     let spread = F::splat(stage.pixel);
-    let light = if first.id <= NONE {
+    let light = if first.id() <= NONE {
         shade::background(&stage.scene.background, &rays, spread).0
     } else {
-        let s = surface(stage.scene, &rays, t, F::splat(first.id), spread);
-        let mut codes = first.codes.map(F::splat);
+        let s = surface(stage.scene, &rays, t, F::splat(first.id()), spread);
+        let mut codes = first.codes();
         let view = -rays.direction;
         let all = F::ZERO.simd_gt(F::splat(-1.0));
         let lit = shade::direct(stage, &s, view, all, Visibility::Known, &mut codes, counters);

@@ -4,8 +4,10 @@
 //! the result depends neither on threads nor on order. Pixels on edges are found by all tiles
 //! first and get their additional samples in a second pass.
 
+mod block;
 mod edges;
 mod interpolate;
+mod rays;
 mod refine;
 mod tile;
 mod wave;
@@ -13,4 +15,4 @@ mod wave;
 pub use edges::smooth_edges;
 pub use refine::refine;
 pub use tile::{Borders, Kind, Record, TILE, Tile};
-pub use wave::{Sample, Scratch};
+pub use wave::Scratch;

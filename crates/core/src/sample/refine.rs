@@ -10,9 +10,10 @@
 //! a shape whose bound, seen from a lamp, meets the cell's patch of surface, when all corners are
 //! lit. A convex front is nowhere deeper than its deepest corner, seen along the view axis.
 
+use super::block::{Sample, Samples};
 use super::interpolate::fill;
 use super::tile::{Borders, Kind, Record, TILE, Tile};
-use super::wave::{Position, Sample, Scratch, trace};
+use super::wave::{Position, Scratch, trace};
 use crate::counters::Counter;
 use crate::cull::{Region, may_cover, occluders};
 use crate::render::Stage;
@@ -33,8 +34,8 @@ pub(super) struct Cell {
 
 /// The samples of a cell: corners in reading order, and the centre.
 pub(super) struct Corners<'a> {
-    pub corners: [&'a Sample; 4],
-    pub centre: Option<&'a Sample>,
+    pub corners: [Sample<'a>; 4],
+    pub centre: Option<Sample<'a>>,
 }
 
 impl Cell {
@@ -70,7 +71,7 @@ pub fn refine(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize), tile
     let height = TILE.min(stage.height as usize - corner.1);
     let cell = stage.quality.cell(stage.height) as usize;
     let mut around = Surroundings { shapes: stage.candidates(corner, TILE), shadows: [u64::MAX; MAX_LAMPS] };
-    scratch.samples.clear();
+    scratch.samples.0.clear();
     scratch.grid.clear();
     scratch.grid.resize(GRID * GRID, u32::MAX);
 
@@ -88,19 +89,18 @@ pub fn refine(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize), tile
         }
         let mut next = Vec::new();
         for &cell in &cells {
-            let at = |(x, y): (usize, usize)| &scratch.samples[scratch.grid[y * GRID + x] as usize];
+            let at = |(x, y): (usize, usize)| scratch.samples.get(scratch.grid[y * GRID + x] as usize);
             let known = Corners { corners: cell.points().map(at), centre: cell.middle(stage).map(at) };
-            let same = known.alike();
             if cell.size == 1 {
-                tile.set(cell.x, cell.y, known.corners[0].colour, Record::new(Kind::Traced, 1));
+                tile.set(cell.x, cell.y, known.corners[0].colour(), Record::new(Kind::Traced, 1));
                 scratch.counters.add(Counter::Traced, 1);
-                if !same {
+                if known.is_edge(stage) {
                     for (x, y) in cell.points() {
                         edges[y][x] = true;
                     }
                 }
             } else if cell.size <= stage.quality.smallest as usize
-                || (same && known.smooth(stage) && !around.may_hide_something(stage, corner, cell, &known))
+                || (known.smooth(stage) && !around.may_hide_something(stage, corner, cell, &known))
             {
                 fill(stage, corner, cell, &known, tile, &mut scratch.counters);
             } else {
@@ -115,7 +115,7 @@ pub fn refine(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize), tile
 /// Traces the samples of `cells` that are still missing, in the cells' order.
 fn sample(stage: &Stage, scratch: &mut Scratch, cells: &[Cell], corner: (usize, usize), shapes: u64) {
     let mut missing: Vec<Position> = Vec::new();
-    let before = scratch.samples.len();
+    let before = scratch.samples.0.len() * 8;
     for cell in cells {
         for (x, y) in cell.points().into_iter().chain(cell.middle(stage)) {
             let slot = &mut scratch.grid[y * GRID + x];
@@ -129,13 +129,15 @@ fn sample(stage: &Stage, scratch: &mut Scratch, cells: &[Cell], corner: (usize, 
 }
 
 /// Shapes that may cast a shadow on any surface between `samples`, per lamp.
-fn shadow_casters(stage: &Stage, samples: &[Sample]) -> [u64; MAX_LAMPS] {
+fn shadow_casters(stage: &Stage, samples: &Samples) -> [u64; MAX_LAMPS] {
     let mut masks = [0; MAX_LAMPS];
-    let hits = || samples.iter().filter(|s| s.id >= 0.0).map(|s| s.point);
+    let hits =
+        || (0..samples.0.len() * 8).map(|i| samples.get(i)).filter(|s| s.id() >= 0.0).map(|s| s.point());
     let Some(some) = hits().next() else { return masks };
     let (lo, hi) = hits().fold((some, some), |(lo, hi), p| (lo.min(p), hi.max(p)));
+    let region = Region::Ball((lo + hi) * 0.5, (hi - lo).length() * 0.5);
     for (mask, shafts) in masks.iter_mut().zip(&stage.shafts) {
-        *mask = occluders(stage.scene, shafts, None, &Region::Ball((lo + hi) * 0.5, (hi - lo).length() * 0.5));
+        *mask = occluders(stage.scene, shafts, u64::MAX, None, &region);
     }
     masks
 }
@@ -152,33 +154,55 @@ fn collect(edges: &[[bool; GRID]; GRID], tile: &mut Tile) -> Borders {
 }
 
 impl Corners<'_> {
-    /// Whether all samples saw the same things, from about the same side.
-    fn alike(&self) -> bool {
+    /// Whether all samples agree with the first in a property.
+    fn all(&self, like: impl Fn(Sample, Sample) -> bool) -> bool {
         let first = self.corners[0];
-        let like =
-            |s: &&Sample| s.signature == first.signature && (s.id < 0.0 || s.normal.dot(first.normal) > 0.5);
-        self.corners[1..].iter().chain(&self.centre).all(like)
+        self.corners[1..].iter().chain(&self.centre).all(|&s| like(s, first))
     }
 
-    /// Whether the bilinear value at the centre is within tolerance of the true one.
+    /// Whether all samples saw the same surface from about the same side, by the same lamps.
+    fn same_surface(&self) -> bool {
+        self.all(|s, first| {
+            s.surface() == first.surface() && (s.id() < 0.0 || s.normal().dot(first.normal()) > 0.5)
+        })
+    }
+
+    /// Whether mirrors and glass show the same things at all samples.
+    fn same_signature(&self) -> bool {
+        self.all(|s, first| s.signature() == first.signature())
+    }
+
+    /// Whether what the samples saw differs visibly.
+    fn is_edge(&self, stage: &Stage) -> bool {
+        let limit = 2.0 * stage.quality.tolerance;
+        let contrast = |s: Sample, first: Sample| (s.display() - first.display()).abs().max_element();
+        !(self.same_surface() && self.same_signature()) && !self.all(|s, first| contrast(s, first) <= limit)
+    }
+
+    /// Whether the bilinear value at the centre is within tolerance of the true one; within a
+    /// quarter of it where mirrors or glass show different things at the samples.
     ///
     /// Written so that NaN refines. Without a centre sample the corners must be this close.
     fn smooth(&self, stage: &Stage) -> bool {
-        let tolerance = stage.quality.tolerance;
-        let [a, b, c, d] = self.corners;
+        if !self.same_surface() {
+            return false;
+        }
+        let tolerance = stage.quality.tolerance * if self.same_signature() { 1.0 } else { 0.25 };
+        let corners = self.corners.map(|s| s.display());
         let error = match self.centre {
             Some(centre) if stage.exact_surface() => {
-                let indirect = (a.indirect + b.indirect + c.indirect + d.indirect) * 0.25;
-                let predicted = stage.display.map(centre.colour - centre.indirect + indirect);
-                (predicted - centre.display).abs().max_element()
+                let [a, b, c, d] = self.corners.map(|s| s.indirect());
+                let predicted = stage.display.map(centre.direct() + (a + b + c + d) * 0.25);
+                (predicted - centre.display()).abs().max_element()
             }
             Some(centre) => {
-                let mean = (a.display + b.display + c.display + d.display) * 0.25;
-                (mean - centre.display).abs().max_element()
+                let [a, b, c, d] = corners;
+                ((a + b + c + d) * 0.25 - centre.display()).abs().max_element()
             }
             None => {
-                let lo = a.display.min(b.display).min(c.display.min(d.display));
-                let hi = a.display.max(b.display).max(c.display.max(d.display));
+                let [a, b, c, d] = corners;
+                let lo = a.min(b).min(c.min(d));
+                let hi = a.max(b).max(c.max(d));
                 (hi - lo).max_element()
             }
         };
@@ -189,13 +213,13 @@ impl Corners<'_> {
 impl Surroundings {
     /// Whether a shape, or the shadow of one, may lie between the samples of a cell.
     fn may_hide_something(&self, stage: &Stage, corner: (usize, usize), cell: Cell, known: &Corners) -> bool {
-        let id = known.corners[0].id;
+        let id = known.corners[0].id();
         let own = if id >= 0.0 { id as usize >> 2 } else { usize::MAX };
         let half = cell.size as f32 * 0.5;
         let middle = ((corner.0 + cell.x) as f32 + half + 0.5, (corner.1 + cell.y) as f32 + half + 0.5);
         let at = stage.on_screen(middle.0, middle.1);
         let reach = Vec2::splat(half * stage.pixel);
-        let depths = known.corners.map(|s| s.depth);
+        let depths = known.corners.map(|s| s.depth());
         let deepest = depths.into_iter().fold(0.0, f32::max);
         for (i, dop) in stage.dops.iter().enumerate() {
             if self.shapes >> (i & 63) & 1 == 0 || i == own || dop.unbounded || dop.near >= deepest {
@@ -208,20 +232,22 @@ impl Surroundings {
         if own == usize::MAX {
             return false;
         }
-        let points = known.corners.map(|s| s.point);
+        let points = known.corners.map(|s| s.point());
         // Between the corners a curved surface bulges out of their hull.
         let flat = matches!(stage.scene.shape(own), Shape::Plane(_) | Shape::Triangle(_));
         let across = (points[3] - points[0]).length().max((points[2] - points[1]).length());
         let region = Region::Patch(points, if flat { 0.0 } else { 0.1 * across });
         let material = &stage.scene.materials[stage.scene.shape(own).material()];
         for (lamp, shafts) in stage.shafts.iter().enumerate() {
-            let lit = known.corners.iter().all(|s| s.codes[lamp] != BLOCKED);
+            let position = stage.lamps[lamp].position;
+            let faces = known.corners.iter().any(|s| s.normal().dot(position - s.point()) > 0.0);
+            let lit = faces && known.corners.iter().all(|s| s.code(lamp) != BLOCKED);
             if self.shadows[lamp] == 0 || !lit || !stage.lamps[lamp].lights(material) {
                 continue;
             }
             // A body that already colours the light of all samples is known to be there.
-            let crossed = known.corners[0].codes[lamp] as u32;
-            let may = occluders(stage.scene, shafts, Some(own), &region) & self.shadows[lamp];
+            let crossed = known.corners[0].code(lamp) as u32;
+            let may = occluders(stage.scene, shafts, self.shadows[lamp], Some(own), &region);
             for (i, &bit) in stage.bits.iter().enumerate() {
                 let known_tint = bit > 0.0 && crossed & bit as u32 != 0;
                 let unbounded = matches!(stage.scene.shape(i), Shape::Plane(_));

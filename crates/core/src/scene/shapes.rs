@@ -16,13 +16,16 @@ pub struct Sphere {
     pub blend: f32,
 }
 
-/// An infinite plane; both sides are seen.
+/// A plane, infinite or a wide disc; both sides are seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plane {
-    /// Any point of the plane, world.
+    /// Any point of the plane, or the middle of the disc, world.
     pub point: Vec3,
     /// Unit normal.
     pub normal: Vec3,
+    /// Radius of the disc, world units, or infinity. Ending a floor where the haze has swallowed
+    /// it spares the horizon's endless detail.
+    pub reach: f32,
     /// Index into the scene's materials.
     pub material: usize,
 }

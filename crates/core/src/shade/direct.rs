@@ -116,9 +116,7 @@ pub fn direct(
         let reach = lamp.lobe(-l);
         // Mirrors show shining rectangles themselves, in place of a highlight.
         let plain = if lamp.is_emitter { diffuse | (shiny & !mirrors) } else { diffuse | shiny };
-        let wanted = active
-            & plain
-            & n_l.simd_gt(zero) & facing.dot(l).simd_gt(zero) & reach.simd_gt(zero);
+        let wanted = active & plain & n_l.simd_gt(zero) & facing.dot(l).simd_gt(zero) & reach.simd_gt(zero);
         if let (Some(code), Visibility::Trace(candidates)) = (codes.get_mut(k), &visibility) {
             *code = zero;
             if candidates[k] != 0 && wanted.any() {

@@ -48,6 +48,12 @@ pub struct Span {
 }
 
 impl Span {
+    /// No crossing in any lane.
+    pub const MISS: Span = {
+        let (t, part) = (F::splat(-1.0), F::splat(0.0));
+        Span { enter: t, exit: t, enter_part: part, exit_part: part }
+    };
+
     /// A crossing of an open shape at `t`, or a miss where `hit` is not set.
     #[inline(always)]
     pub fn single(t: F, hit: F) -> Self {
@@ -60,6 +66,19 @@ impl Span {
     pub fn first(&self) -> (F, F) {
         let outside = self.enter.simd_gt(F::ZERO);
         (outside.select(self.enter, self.exit), outside.select(self.enter_part, self.exit_part))
+    }
+}
+
+impl Rays8 {
+    /// Whether some ray's line comes near the ball: a cheap test before an expensive one, which
+    /// errs to true by rounding.
+    #[inline(always)]
+    pub fn near_ball(&self, centre: glam::Vec3, radius: f32) -> bool {
+        let f = self.origin - V3::splat(centre);
+        let d = self.direction;
+        let (ff, b) = (f.dot(f), f.dot(d));
+        let reach = F::splat(radius * radius * 1.0001) + ff * F::splat(2e-6);
+        (ff - b * b / d.dot(d)).simd_le(reach).any()
     }
 }
 

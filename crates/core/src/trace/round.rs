@@ -49,6 +49,9 @@ fn roots(a: F, b: F, c: F, disc: F) -> (F, F) {
 fn clip(ray: &Axial, side: (F, F), hit: F, range: [f32; 2], caps: [bool; 2]) -> Span {
     let (zero, inf) = (F::ZERO, F::splat(f32::INFINITY));
     let (lo, hi) = (F::splat(range[0]), F::splat(range[1]));
+    if !hit.any() {
+        return Span::MISS;
+    }
     let forward = ray.direction.simd_gt(zero);
     let (t_lo, t_hi) = ((lo - ray.origin) / ray.direction, (hi - ray.origin) / ray.direction);
     let across = ray.direction.simd_eq(zero);
@@ -83,6 +86,12 @@ fn clip(ray: &Axial, side: (F, F), hit: F, range: [f32; 2], caps: [bool; 2]) -> 
 
 /// Where `rays` cross the cylinder.
 pub fn cylinder(rays: &Rays8, s: &Cylinder) -> Span {
+    let half = s.length * 0.5;
+    if half < f32::INFINITY
+        && !rays.near_ball(s.base + s.axis * half, (half * half + s.radius * s.radius).sqrt())
+    {
+        return Span::MISS;
+    }
     let ray = Axial::new(rays, s.base, s.axis);
     let r = F::splat(s.radius);
     let (n, m) = (ray.n.length(), ray.m.length());
@@ -99,6 +108,14 @@ pub fn cylinder(rays: &Rays8, s: &Cylinder) -> Span {
 
 /// Where `rays` cross the cone.
 pub fn cone(rays: &Rays8, s: &Cone) -> Span {
+    let half = (s.range[1] - s.range[0]) * 0.5;
+    let rim = s.range[1] * s.slope;
+    if half < f32::INFINITY {
+        let middle = s.apex + s.axis * (s.range[0] + half);
+        if !rays.near_ball(middle, (half * half + rim * rim).sqrt()) {
+            return Span::MISS;
+        }
+    }
     let ray = Axial::new(rays, s.apex, s.axis);
     let k = F::splat(s.slope);
     let (zero, inf) = (F::ZERO, F::splat(f32::INFINITY));
