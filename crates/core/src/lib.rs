@@ -2,5 +2,6 @@
 #![warn(missing_docs)]
 #![forbid(unsafe_code)]
 
+pub mod output;
 pub mod quality;
 pub mod render;
