@@ -8,7 +8,8 @@
 use super::args::Options;
 use super::stage::{Picture, Stage};
 use super::text::{Text, join};
-use super::{fit, loader, x11};
+use super::x11::{Screen, no_display};
+use super::{fit, loader};
 use minifb::{InputCallback, Key, Scale, Window, WindowOptions};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -33,8 +34,8 @@ impl InputCallback for Keys {
 
 /// Plays the show until it ends or the user ends it.
 pub fn play(options: &Options) -> Result<(), Text> {
-    let screen = x11::screen()?;
-    let mut window = open(options, screen)?;
+    let screen = Screen::find()?;
+    let mut window = open(options, &screen)?;
     let escape = Arc::new(AtomicBool::new(false));
     window.set_input_callback(Box::new(Keys(escape.clone())));
     window.set_cursor_visibility(false);
@@ -75,13 +76,13 @@ pub fn play(options: &Options) -> Result<(), Text> {
 }
 
 /// Opens the window: as large as the picture where the screen has room for it, or over the whole screen.
-fn open(options: &Options, screen: Option<(usize, usize)>) -> Result<Window, Text> {
+fn open(options: &Options, screen: &Screen) -> Result<Window, Text> {
     let size = (options.size.0 as usize, options.size.1 as usize);
     let mut how = WindowOptions { resize: true, borderless: options.fullscreen, ..Default::default() };
-    let (width, height) = match screen {
-        Some(screen) if options.fullscreen => screen,
-        Some(screen) if size.0 > screen.0 || size.1 > screen.1 => {
-            let fitted = fit::rect(size, screen);
+    let (width, height) = match screen.size {
+        Some(whole) if options.fullscreen => whole,
+        Some(whole) if size.0 > whole.0 || size.1 > whole.1 => {
+            let fitted = fit::rect(size, whole);
             (fitted.width, fitted.height)
         }
         None if options.fullscreen => {
@@ -91,9 +92,9 @@ fn open(options: &Options, screen: Option<(usize, usize)>) -> Result<Window, Tex
         }
         _ => size,
     };
-    let window = Window::new("Lúč", width, height, how).map_err(|_| x11::no_display())?;
+    let window = Window::new("Lúč", width, height, how).map_err(|_| no_display())?;
     if options.fullscreen {
-        x11::cover_screen(window.get_window_handle());
+        screen.cover(window.get_window_handle());
     }
     Ok(window)
 }

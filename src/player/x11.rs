@@ -5,7 +5,7 @@
 //! Elsewhere than on Linux these functions know nothing and do nothing.
 
 use super::text::{Text, join};
-pub use system::{cover_screen, screen};
+pub use system::Screen;
 
 /// The answer to a missing display.
 pub fn no_display() -> Text {
@@ -16,20 +16,27 @@ pub fn no_display() -> Text {
 mod system {
     use std::ffi::c_void;
 
-    /// The screen's size, if it can be found.
-    pub fn screen() -> Result<Option<(usize, usize)>, super::Text> {
-        Ok(None)
+    /// The screen, of which nothing is known.
+    pub struct Screen {
+        /// Width and height, if they can be found.
+        pub size: Option<(usize, usize)>,
     }
 
-    /// Asks for the whole screen.
-    pub fn cover_screen(_window: *mut c_void) {}
+    impl Screen {
+        /// Always there; opening the window will tell.
+        pub fn find() -> Result<Self, super::Text> {
+            Ok(Screen { size: None })
+        }
+
+        /// Asks for the whole screen.
+        pub fn cover(&self, _window: *mut c_void) {}
+    }
 }
 
 #[cfg(target_os = "linux")]
 mod system {
     use super::{Text, join, no_display};
-    use std::ffi::{CStr, c_char, c_int, c_long, c_uint, c_ulong, c_void};
-    use std::mem::transmute;
+    use std::ffi::{CStr, c_char, c_int, c_long, c_ulong, c_void};
     use std::ptr::{null, null_mut};
 
     unsafe extern "C" {
@@ -64,43 +71,6 @@ mod system {
         rest: [c_long; 12],
     }
 
-    /// libX11, loaded once; it stays loaded, because minifb uses it too.
-    struct Library(*mut c_void);
-
-    impl Library {
-        fn load() -> Option<Self> {
-            // SAFETY: the name is a C string; libX11 has no initialiser with requirements.
-            let library = unsafe { dlopen(c"libX11.so.6".as_ptr(), RTLD_LAZY) };
-            (!library.is_null()).then_some(Library(library))
-        }
-
-        fn find(&self, name: &CStr) -> Option<*mut c_void> {
-            // SAFETY: the handle is open and the name is a C string.
-            let found = unsafe { dlsym(self.0, name.as_ptr()) };
-            (!found.is_null()).then_some(found)
-        }
-
-        /// A connection of our own and the root window.
-        fn connect(&self) -> Option<(Display, Id)> {
-            let open = self.find(c"XOpenDisplay")?;
-            let root = self.find(c"XDefaultRootWindow")?;
-            // SAFETY: these are the functions' types in Xlib.h; no name means the one in DISPLAY.
-            unsafe {
-                let open: extern "C" fn(*const c_char) -> Display = transmute(open);
-                let root: extern "C" fn(Display) -> Id = transmute(root);
-                let display = open(null());
-                (!display.is_null()).then(|| (display, root(display)))
-            }
-        }
-
-        fn disconnect(&self, display: Display) {
-            if let Some(close) = self.find(c"XCloseDisplay") {
-                // SAFETY: the type in Xlib.h; the display is open and not used again.
-                unsafe { transmute::<*mut c_void, extern "C" fn(Display) -> c_int>(close)(display) };
-            }
-        }
-    }
-
     /// A request failed. A window that is gone was closed by force, which ends the program like any
     /// other way of closing; without this Xlib prints a report and ends with code 1.
     extern "C" fn on_error(_: Display, event: *const ErrorEvent) -> c_int {
@@ -120,81 +90,101 @@ mod system {
         std::process::exit(0);
     }
 
-    /// The screen's size, if it can be found; fails if there is no display. Also makes the end of the
-    /// window or the display a quiet one.
-    pub fn screen() -> Result<Option<(usize, usize)>, Text> {
-        let Some(x11) = Library::load() else {
-            return Err(join(&[b"no display: install libX11, or write a frame with --frame N"]));
-        };
-        let (display, root) = x11.connect().ok_or_else(no_display)?;
-        let mut size = None;
-        if let (Some(geometry), Some(set_error), Some(set_lost)) =
-            (x11.find(c"XGetGeometry"), x11.find(c"XSetErrorHandler"), x11.find(c"XSetIOErrorHandler"))
-        {
-            type Geometry = extern "C" fn(
-                Display,
-                Id,
-                *mut Id,
-                *mut c_int,
-                *mut c_int,
-                *mut c_uint,
-                *mut c_uint,
-                *mut c_uint,
-                *mut c_uint,
-            ) -> c_int;
-            type SetError = extern "C" fn(extern "C" fn(Display, *const ErrorEvent) -> c_int) -> *mut c_void;
-            type SetLost = extern "C" fn(extern "C" fn(Display) -> c_int) -> *mut c_void;
-            let (mut id, mut x, mut y) = (0, 0, 0);
-            let (mut width, mut height, mut border, mut depth) = (0, 0, 0, 0);
-            // SAFETY: these are the functions' types in Xlib.h, and all pointers are to live variables.
-            unsafe {
-                transmute::<*mut c_void, SetError>(set_error)(on_error);
-                transmute::<*mut c_void, SetLost>(set_lost)(on_lost);
-                let geometry: Geometry = transmute(geometry);
-                let (w, h, b, d) = (&mut width, &mut height, &mut border, &mut depth);
-                geometry(display, root, &mut id, &mut x, &mut y, w, h, b, d);
-            }
-            if width > 0 && height > 0 {
-                size = Some((width as usize, height as usize));
-            }
-        }
-        x11.disconnect(display);
-        Ok(size)
+    /// The screen and a connection of our own to it. The connection stays open: a display whose last
+    /// connection closes starts anew and refuses the next one for a moment.
+    pub struct Screen {
+        /// Width and height, if they can be found.
+        pub size: Option<(usize, usize)>,
+        library: *mut c_void,
+        display: Display,
+        root: Id,
     }
 
-    /// Asks the window manager, if there is one, to give the window the whole of its monitor.
-    pub fn cover_screen(window: *mut c_void) {
-        const CLIENT_MESSAGE: c_int = 33;
-        const TO_WINDOW_MANAGER: c_long = 1 << 20 | 1 << 19;
-        const ADD: c_long = 1;
-        const FROM_APPLICATION: c_long = 1;
-        let Some(x11) = Library::load() else { return };
-        let (Some(atom), Some(send)) = (x11.find(c"XInternAtom"), x11.find(c"XSendEvent")) else { return };
-        let Some((display, root)) = x11.connect() else { return };
-        type Send = extern "C" fn(Display, Id, c_int, c_long, *mut ClientMessage) -> c_int;
-        // SAFETY: these are the functions' types in Xlib.h; the message is as long as an XEvent.
-        unsafe {
-            let atom: extern "C" fn(Display, *const c_char, c_int) -> Id = transmute(atom);
-            let send: Send = transmute(send);
-            let mut message = ClientMessage {
-                kind: CLIENT_MESSAGE,
-                serial: 0,
-                sent: 1,
-                display: null_mut(),
-                window: window as Id,
-                message: atom(display, c"_NET_WM_STATE".as_ptr(), 0),
-                format: 32,
-                data: [
-                    ADD,
-                    atom(display, c"_NET_WM_STATE_FULLSCREEN".as_ptr(), 0) as c_long,
-                    0,
-                    FROM_APPLICATION,
-                    0,
-                ],
-                rest: [0; 12],
-            };
-            send(display, root, 0, TO_WINDOW_MANAGER, &mut message);
+    impl Screen {
+        /// Finds the screen and makes the end of the window or the display a quiet one.
+        pub fn find() -> Result<Self, Text> {
+            // SAFETY: the name is a C string; libX11 has no initialiser with requirements. It stays
+            // loaded, because minifb uses it too.
+            let library = unsafe { dlopen(c"libX11.so.6".as_ptr(), RTLD_LAZY) };
+            if library.is_null() {
+                return Err(join(&[b"no display: install libX11, or write a frame with --frame N"]));
+            }
+            let mut screen = Screen { size: None, library, display: null_mut(), root: 0 };
+            screen.connect().ok_or_else(no_display)?;
+            Ok(screen)
         }
-        x11.disconnect(display);
+
+        /// The function `name` of libX11. There is none with another type, so `F` must be what Xlib.h says.
+        unsafe fn function<F: Copy>(&self, name: &CStr) -> Option<F> {
+            const { assert!(size_of::<F>() == size_of::<*mut c_void>()) };
+            // SAFETY: the library is open and the name is a C string.
+            let found = unsafe { dlsym(self.library, name.as_ptr()) };
+            // SAFETY: `F` is a function's type, so says the caller, and as large as a pointer.
+            (!found.is_null()).then(|| unsafe { std::mem::transmute_copy(&found) })
+        }
+
+        fn connect(&mut self) -> Option<()> {
+            type Open = extern "C" fn(*const c_char) -> Display;
+            type Root = extern "C" fn(Display) -> Id;
+            type SetError = extern "C" fn(extern "C" fn(Display, *const ErrorEvent) -> c_int) -> *mut c_void;
+            type SetLost = extern "C" fn(extern "C" fn(Display) -> c_int) -> *mut c_void;
+            type Sides = extern "C" fn(Display, c_int) -> c_int;
+            const FIRST_SCREEN: c_int = 0;
+            // SAFETY: the types are those in Xlib.h.
+            unsafe {
+                self.display = self.function::<Open>(c"XOpenDisplay")?(null());
+                if self.display.is_null() {
+                    return None;
+                }
+                self.function::<SetError>(c"XSetErrorHandler")?(on_error);
+                self.function::<SetLost>(c"XSetIOErrorHandler")?(on_lost);
+                self.root = self.function::<Root>(c"XDefaultRootWindow")?(self.display);
+                let width = self.function::<Sides>(c"XDisplayWidth")?(self.display, FIRST_SCREEN);
+                let height = self.function::<Sides>(c"XDisplayHeight")?(self.display, FIRST_SCREEN);
+                self.size = (width > 0 && height > 0).then_some((width as usize, height as usize));
+            }
+            Some(())
+        }
+
+        /// Asks the window manager, if there is one, to give the window the whole of its monitor.
+        pub fn cover(&self, window: *mut c_void) {
+            // A window manager that cannot be asked leaves a window that covers the screen anyway.
+            let _ = self.ask(window as Id);
+        }
+
+        fn ask(&self, window: Id) -> Option<()> {
+            type Intern = extern "C" fn(Display, *const c_char, c_int) -> Id;
+            type Send = extern "C" fn(Display, Id, c_int, c_long, *mut ClientMessage) -> c_int;
+            type Flush = extern "C" fn(Display) -> c_int;
+            const CLIENT_MESSAGE: c_int = 33;
+            const TO_WINDOW_MANAGER: c_long = 1 << 20 | 1 << 19;
+            const ADD: c_long = 1;
+            const FROM_APPLICATION: c_long = 1;
+            // SAFETY: the types are those in Xlib.h; the message is as long as an XEvent.
+            unsafe {
+                let intern: Intern = self.function(c"XInternAtom")?;
+                let full = intern(self.display, c"_NET_WM_STATE_FULLSCREEN".as_ptr(), 0);
+                let mut message = ClientMessage {
+                    kind: CLIENT_MESSAGE,
+                    serial: 0,
+                    sent: 1,
+                    display: self.display,
+                    window,
+                    message: intern(self.display, c"_NET_WM_STATE".as_ptr(), 0),
+                    format: 32,
+                    data: [ADD, full as c_long, 0, FROM_APPLICATION, 0],
+                    rest: [0; 12],
+                };
+                self.function::<Send>(c"XSendEvent")?(
+                    self.display,
+                    self.root,
+                    0,
+                    TO_WINDOW_MANAGER,
+                    &mut message,
+                );
+                self.function::<Flush>(c"XFlush")?(self.display);
+            }
+            Some(())
+        }
     }
 }
