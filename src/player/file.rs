@@ -72,11 +72,13 @@ pub fn print(bytes: &[u8]) -> Result<(), Text> {
         .map_err(|e| join(&[b"cannot write standard output: ", &reason(&e)]))
 }
 
-/// The name to write under until the file is complete: hidden, and no longer than the system allows even
-/// where the file's own name is.
+/// The name to write under until the file is complete. It is put together without taking the path
+/// apart, which would cost more than all else here.
 fn aside(path: &Path) -> PathBuf {
-    let name = join(&[b".luc-", &number(std::process::id().into())]);
-    path.with_file_name(std::str::from_utf8(&name).unwrap_or(".luc"))
+    let mut name = path.as_os_str().to_owned();
+    let ending = join(&[b".luc-", &number(std::process::id().into())]);
+    name.push(std::str::from_utf8(&ending).unwrap_or_default());
+    name.into()
 }
 
 /// Only a new file: nothing that exists may be overwritten by the unfinished one.

@@ -3,7 +3,7 @@
 /// The line's colour, that of the show's gold.
 const WARM: u32 = 0xe8_b0_60;
 /// What is still to do.
-const DIM: u32 = 0x24_1c_12;
+const DIM: u32 = 0x38_2b_1a;
 
 /// Fills `out`, the pixels of a window of `width` by `height`, with the bar at `done` of `total`.
 pub fn draw(out: &mut Vec<u32>, (width, height): (usize, usize), done: usize, total: usize) {

@@ -74,9 +74,9 @@ impl Stage {
         self.room.store((width as u32) << 16 | (height as u32 & 0xffff), Relaxed);
     }
 
-    /// Parts prepared, and how many there are to prepare.
+    /// Frames drawn before the first can be seen, and how many there are to draw, itself among them.
     pub fn progress(&self) -> (usize, usize) {
-        (self.prepared.load(Relaxed), self.parts.len())
+        (self.prepared.load(Relaxed), self.parts.len() + 1)
     }
 
     /// True when the last frame of a show played once has been taken.
@@ -168,7 +168,7 @@ mod tests {
         };
         let stage = Stage::new(&o, (64, 64));
         stage.perform();
-        assert_eq!(stage.progress(), (1, 1));
+        assert_eq!(stage.progress(), (1, 2));
         assert!(!stage.is_over(), "the last frame has not been seen");
         let mut picture = Picture::default();
         assert!(stage.take(&mut picture));
