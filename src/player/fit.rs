@@ -25,26 +25,31 @@ pub fn rect(picture: (usize, usize), window: (usize, usize)) -> Rect {
 /// Fills `out`, the window's pixels, with `pixels` fitted in.
 pub fn fit(pixels: &[u32], picture: (usize, usize), out: &mut Vec<u32>, window: (usize, usize)) {
     let r = rect(picture, window);
-    out.clear();
     out.resize(window.0 * window.1, 0);
+    out[..r.y * window.0].fill(0);
+    out[(r.y + r.height) * window.0..].fill(0);
     // Two neighbouring source rows, widened; `held` is the number of the upper one.
     let mut upper = vec![0; r.width];
     let mut lower = vec![0; r.width];
     let mut held = None;
+    // Dividing for each pixel of each row would take longer than all else.
+    let columns: Vec<_> = (0..r.width).map(|x| source(x, r.width, picture.0)).collect();
     for y in 0..r.height {
         let (row, weight) = source(y, r.height, picture.1);
         if held != Some(row) {
             if held.is_some_and(|h| h + 1 == row) {
                 std::mem::swap(&mut upper, &mut lower);
             } else {
-                widen(&pixels[row * picture.0..][..picture.0], &mut upper);
+                widen(&pixels[row * picture.0..][..picture.0], &columns, &mut upper);
             }
             let below = (row + 1).min(picture.1 - 1);
-            widen(&pixels[below * picture.0..][..picture.0], &mut lower);
+            widen(&pixels[below * picture.0..][..picture.0], &columns, &mut lower);
             held = Some(row);
         }
-        let line = &mut out[(r.y + y) * window.0 + r.x..][..r.width];
-        for ((to, &a), &b) in line.iter_mut().zip(&upper).zip(&lower) {
+        let line = &mut out[(r.y + y) * window.0..][..window.0];
+        line[..r.x].fill(0);
+        line[r.x + r.width..].fill(0);
+        for ((to, &a), &b) in line[r.x..].iter_mut().zip(&upper).zip(&lower) {
             *to = blend(a, b, weight);
         }
     }
@@ -57,10 +62,8 @@ fn source(i: usize, to: usize, from: usize) -> (usize, u32) {
     (at >> 8, (at & 255) as u32)
 }
 
-fn widen(from: &[u32], to: &mut [u32]) {
-    let width = to.len();
-    for (i, pixel) in to.iter_mut().enumerate() {
-        let (x, weight) = source(i, width, from.len());
+fn widen(from: &[u32], columns: &[(usize, u32)], to: &mut [u32]) {
+    for (pixel, &(x, weight)) in to.iter_mut().zip(columns) {
         *pixel = blend(from[x], from[(x + 1).min(from.len() - 1)], weight);
     }
 }
@@ -79,7 +82,7 @@ mod tests {
     use super::*;
 
     fn fitted(pixels: &[u32], picture: (usize, usize), window: (usize, usize)) -> Vec<u32> {
-        let mut out = vec![0xdead; 3];
+        let mut out = vec![0xdead; 2_000];
         fit(pixels, picture, &mut out, window);
         assert_eq!(out.len(), window.0 * window.1);
         out
