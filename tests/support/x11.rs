@@ -156,14 +156,19 @@ impl Player<'_> {
         x.message(self.window.parse().unwrap(), protocols, delete);
     }
 
-    /// Waits for the end and checks that it is a quiet one: code 0 within two seconds, not a word.
+    /// Checks that the end comes within two seconds and is a quiet one.
     pub fn ends(&mut self, how: &str) {
+        self.ends_within(how, Duration::from_secs(2));
+    }
+
+    /// Waits for the end and checks that it is a quiet one: code 0 and not a word.
+    pub fn ends_within(&mut self, how: &str, limit: Duration) {
         let start = Instant::now();
         let status = loop {
             if let Some(status) = self.child.try_wait().unwrap() {
                 break status;
             }
-            assert!(start.elapsed() < Duration::from_secs(2), "{how}: still running after two seconds");
+            assert!(start.elapsed() < limit, "{how}: still running after {limit:?}");
             std::thread::sleep(Duration::from_millis(5));
         };
         let mut said = String::new();
