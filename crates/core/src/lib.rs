@@ -31,6 +31,7 @@
 pub mod counters;
 pub mod cull;
 pub mod math;
+pub mod output;
 pub mod post;
 pub mod quality;
 pub mod render;

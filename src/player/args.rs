@@ -1,0 +1,250 @@
+//! The command line, read by hand: each mistake is answered with what was wrong and what would be right.
+//!
+//! Flags come in any order, a value follows its flag, the last one wins. Flags that cannot have an
+//! effect together are a mistake, not silence.
+
+use super::text::{Text, join, number, quoted, whole};
+use luc::show;
+use luc_core::quality::Quality;
+use std::ffi::OsStr;
+
+/// The largest picture, 8K.
+pub const LARGEST: (u32, u32) = (7680, 4320);
+const MOST_THREADS: u64 = 256;
+
+/// What the user wants.
+#[derive(Debug, PartialEq)]
+pub enum Request<'a> {
+    /// The text of `--help`.
+    Help,
+    /// Name and version.
+    Version,
+    /// A frame, or the show in a window.
+    Run(Options<'a>),
+}
+
+/// How to play, or which frame to write.
+#[derive(Debug, PartialEq)]
+pub struct Options<'a> {
+    /// Write this frame and open no window.
+    pub frame: Option<u64>,
+    /// Where to write the frame; `-` is standard output.
+    pub output: Option<&'a OsStr>,
+    /// Width and height of the picture.
+    pub size: (u32, u32),
+    /// Index into the presets; without it, the player adapts and a frame takes the default.
+    pub quality: Option<usize>,
+    /// Index of the only part to show.
+    pub scene: Option<usize>,
+    /// End instead of looping.
+    pub once: bool,
+    /// First frame to play.
+    pub from: u64,
+    /// Rendering threads; 0 is one for each core.
+    pub threads: usize,
+    /// Cover the screen.
+    pub fullscreen: bool,
+}
+
+/// Reads the arguments that follow the program's name.
+pub fn parse<'a>(args: &[&'a OsStr]) -> Result<Request<'a>, Text> {
+    let mut options = Options {
+        frame: None,
+        output: None,
+        size: (1280, 720),
+        quality: None,
+        scene: None,
+        once: false,
+        from: 0,
+        threads: 0,
+        fullscreen: false,
+    };
+    let mut windowed: &[u8] = b"";
+    let mut args = args.iter();
+    while let Some(&flag) = args.next() {
+        let flag = flag.as_encoded_bytes();
+        // Looks at the next argument as the value of `flag`.
+        let mut value = |what: &[u8], read: &mut dyn FnMut(&'a OsStr) -> Option<()>| match args.next() {
+            Some(&typed) => read(typed)
+                .ok_or_else(|| join(&[flag, b" wants ", what, b", not ", &quoted(typed.as_encoded_bytes())])),
+            None => Err(join(&[flag, b" wants ", what, b" after it"])),
+        };
+        match flag {
+            b"--help" => return Ok(Request::Help),
+            b"--version" => return Ok(Request::Version),
+            b"--frame" => value(&counting(0, u64::MAX), &mut |v| {
+                options.frame = Some(whole(v.as_encoded_bytes(), 0, u64::MAX)?);
+                Some(())
+            })?,
+            b"--from" => {
+                windowed = b"--from";
+                value(&counting(0, u64::MAX), &mut |v| {
+                    options.from = whole(v.as_encoded_bytes(), 0, u64::MAX)?;
+                    Some(())
+                })?
+            }
+            b"--threads" => value(&counting(1, MOST_THREADS), &mut |v| {
+                options.threads = whole(v.as_encoded_bytes(), 1, MOST_THREADS)? as usize;
+                Some(())
+            })?,
+            b"--size" => value(b"a width and height from 1x1 to 7680x4320, such as 1280x720", &mut |v| {
+                options.size = size(v.as_encoded_bytes())?;
+                Some(())
+            })?,
+            b"--quality" => value(&one_of(&mut qualities()), &mut |v| {
+                options.quality = Some(qualities().position(|name| v == name)?);
+                Some(())
+            })?,
+            b"--scene" => value(&one_of(&mut scenes()), &mut |v| {
+                options.scene = Some(scenes().position(|name| v == name)?);
+                Some(())
+            })?,
+            b"-o" => value(b"a name ending in .png or .ppm, or - for standard output", &mut |v| {
+                let name = v.as_encoded_bytes();
+                options.output = Some(v);
+                (name == b"-" || name.ends_with(b".png") || name.ends_with(b".ppm")).then_some(())
+            })?,
+            b"--once" => {
+                windowed = b"--once";
+                options.once = true;
+            }
+            b"--fullscreen" => {
+                windowed = b"--fullscreen";
+                options.fullscreen = true;
+            }
+            _ => return Err(join(&[&quoted(flag), b" is not an option; --help lists them"])),
+        }
+    }
+    if options.frame.is_none() && options.output.is_some() {
+        return Err(join(&[b"-o needs --frame N, the frame to write"]));
+    }
+    if options.frame.is_some() && !windowed.is_empty() {
+        return Err(join(&[windowed, b" is for playing in a window; leave it or --frame out"]));
+    }
+    Ok(Request::Run(options))
+}
+
+fn qualities() -> impl Iterator<Item = &'static str> {
+    Quality::PRESETS.iter().map(|(name, _)| *name)
+}
+
+fn scenes() -> impl Iterator<Item = &'static str> {
+    show::PARTS.iter().map(|part| part.name)
+}
+
+fn size(typed: &[u8]) -> Option<(u32, u32)> {
+    let x = typed.iter().position(|&c| c == b'x')?;
+    let width = whole(&typed[..x], 1, LARGEST.0.into())?;
+    let height = whole(&typed[x + 1..], 1, LARGEST.1.into())?;
+    Some((width as u32, height as u32))
+}
+
+fn counting(least: u64, most: u64) -> Text {
+    join(&[b"a whole number from ", &number(least), b" to ", &number(most)])
+}
+
+fn one_of(names: &mut dyn Iterator<Item = &str>) -> Text {
+    let mut out = join(&[b"one of"]);
+    for name in names {
+        out.push(b' ');
+        out.extend_from_slice(name.as_bytes());
+    }
+    out
+}
+
+/// The text of `--help`.
+pub fn help() -> Text {
+    join(&[
+        "\
+Lúč, a ray-traced intro. Esc or closing the window ends it.
+
+  luc [options]                      play
+  luc --frame N [-o FILE] [options]  write one frame, open no window
+
+  -o FILE          .png, .ppm, or - for PPM on standard output
+                   (without it: frame-NNNNNN.png)
+  --size WxH       picture size, 1x1 to 7680x4320 (1280x720)
+  --quality NAME   "
+            .as_bytes(),
+        &one_of(&mut qualities()),
+        b"
+                   (a frame: high; playing: whatever holds 60 frames a second)
+  --scene NAME     only this part, ",
+        &one_of(&mut scenes()),
+        b"; N counts from its start
+  --from N         start playing at frame N, 60 a second
+  --once           end instead of looping
+  --fullscreen     cover the screen
+  --threads N      render on N threads, 1 to 256 (all cores)
+  --help           this text
+  --version        name and version
+",
+    ])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read<'a>(args: &[&'a str]) -> Result<Request<'a>, String> {
+        let args: Vec<&OsStr> = args.iter().map(|a| OsStr::new(*a)).collect();
+        parse(&args).map_err(|e| String::from_utf8(e).unwrap())
+    }
+
+    fn options<'a>(args: &[&'a str]) -> Options<'a> {
+        match read(args) {
+            Ok(Request::Run(options)) => options,
+            other => panic!("{args:?} gave {other:?}"),
+        }
+    }
+
+    #[test]
+    fn no_arguments_play_the_show() {
+        let o = options(&[]);
+        assert_eq!((o.frame, o.size, o.quality, o.scene), (None, (1280, 720), None, None));
+        assert_eq!((o.once, o.from, o.threads, o.fullscreen), (false, 0, 0, false));
+    }
+
+    #[test]
+    fn flags_come_in_any_order_and_the_last_one_wins() {
+        let o = options(&["-o", "-", "--size", "7x5", "--frame", "3", "--threads", "256", "--frame", "4"]);
+        assert_eq!((o.frame, o.output, o.size, o.threads), (Some(4), Some(OsStr::new("-")), (7, 5), 256));
+    }
+
+    #[test]
+    fn names_are_looked_up() {
+        for (i, (name, _)) in Quality::PRESETS.iter().enumerate() {
+            assert_eq!(options(&["--quality", name]).quality, Some(i));
+        }
+        for (i, part) in show::PARTS.iter().enumerate() {
+            assert_eq!(options(&["--scene", part.name]).scene, Some(i));
+        }
+    }
+
+    #[test]
+    fn help_states_the_real_default_quality_and_stays_short() {
+        let text = String::from_utf8(help()).unwrap();
+        let default = Quality::PRESETS[Quality::DEFAULT].0;
+        assert!(text.contains(&["a frame: ", default].concat()), "{text}");
+        assert!(text.len() < 1100, "{} bytes", text.len());
+        assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
+    }
+
+    #[test]
+    fn mistakes_are_answered_with_what_would_be_right() {
+        for (args, part) in [
+            (&["--frame"][..], "--frame wants a whole number from 0 to 18446744073709551615 after it"),
+            (&["--frame", "--once"], "not '--once'"),
+            (&["--size", "1280"], "such as 1280x720, not '1280'"),
+            (&["--size", "1x2x3"], "not '1x2x3'"),
+            (&["--quality", ""], "one of draft low medium high ultra reference, not ''"),
+            (&["--scene", "Mirror"], ", not 'Mirror'"),
+            (&["--frame=3"], "'--frame=3' is not an option"),
+            (&["-o", "a.png"], "-o needs --frame"),
+            (&["--frame", "1", "--fullscreen"], "--fullscreen is for playing"),
+        ] {
+            let sentence = read(args).unwrap_err();
+            assert!(sentence.contains(part), "{args:?}: {sentence}");
+        }
+    }
+}

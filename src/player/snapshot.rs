@@ -1,0 +1,38 @@
+//! One frame as a file: no window, no clock, the same bytes on every machine.
+
+use super::args::Options;
+use super::file::Target;
+use super::text::{Text, join};
+use luc::show;
+use luc_core::output::{decimal, png, ppm};
+use luc_core::quality::Quality;
+use luc_core::render::Renderer;
+use std::ffi::OsStr;
+
+/// Renders frame `n` as the options say and writes it.
+pub fn write(options: &Options, n: u64) -> Result<(), Text> {
+    let mut name = Text::from(*b"frame-");
+    decimal(&mut name, n, 6);
+    name.extend_from_slice(b".png");
+    // Digits and letters are always UTF-8.
+    let name = std::str::from_utf8(&name).unwrap_or_default();
+    let output = options.output.unwrap_or(OsStr::new(name));
+    let target = Target::find(output)?;
+
+    let (width, height) = options.size;
+    let count = width as usize * height as usize;
+    let mut pixels = Vec::new();
+    if pixels.try_reserve_exact(count).is_err() {
+        return Err(join(&[b"not enough memory for a picture of this --size"]));
+    }
+    pixels.resize(count, 0);
+    let n = match options.scene {
+        Some(part) => show::start(part) + n % show::PARTS[part].frames,
+        None => n,
+    };
+    let quality = &Quality::PRESETS[options.quality.unwrap_or(Quality::DEFAULT)].1;
+    show::frame(&mut Renderer::default(), n, options.size, quality, &mut pixels);
+
+    let is_png = output.as_encoded_bytes().ends_with(b".png");
+    target.write(&if is_png { png(width, height, &pixels) } else { ppm(width, height, &pixels) })
+}

@@ -1,0 +1,190 @@
+//! Rendering while the window lives: one job on the pool draws frame after frame, and leaves the newest
+//! where the window's thread finds it.
+//!
+//! The job first draws the beginning of each part once at the lowest quality, so that whatever a part
+//! has to build is built before the clock starts. Three pictures change places (being drawn, newest,
+//! on the screen), so that neither side ever waits for the other.
+
+use super::args::Options;
+use super::clock::{Clock, until_next};
+use super::fit;
+use super::live::Live;
+use luc::show;
+use luc_core::quality::Quality;
+use luc_core::render::Renderer;
+use std::mem::swap;
+use std::ops::Range;
+use std::sync::atomic::{AtomicBool, AtomicU32, AtomicUsize, Ordering::Relaxed};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
+
+const DRAFT: usize = 0;
+/// Where live quality starts.
+const MEDIUM: usize = 2;
+/// The last preset meant for playing; the one above is for measuring.
+const ULTRA: usize = Quality::PRESETS.len() - 2;
+
+/// A finished frame.
+#[derive(Default)]
+pub struct Picture {
+    /// Width and height.
+    pub size: (usize, usize),
+    /// 0RGB rows from the top.
+    pub pixels: Vec<u32>,
+}
+
+/// What the rendering job and the window's thread share.
+pub struct Stage {
+    clock: Clock,
+    size: (usize, usize),
+    quality: Option<usize>,
+    parts: Range<usize>,
+    /// The window's size, two halves of a word.
+    room: AtomicU32,
+    prepared: AtomicUsize,
+    over: AtomicBool,
+    newest: Mutex<(bool, Picture)>,
+}
+
+impl Stage {
+    /// For a window of size `room`.
+    pub fn new(options: &Options, room: (usize, usize)) -> Self {
+        let parts = options.scene.map_or(0..show::PARTS.len(), |part| part..part + 1);
+        let stage = Stage {
+            clock: Clock {
+                first: show::start(parts.start),
+                length: parts.clone().map(|part| show::PARTS[part].frames).sum(),
+                from: options.from,
+                once: options.once,
+            },
+            size: (options.size.0 as usize, options.size.1 as usize),
+            quality: options.quality,
+            parts,
+            room: AtomicU32::new(0),
+            prepared: AtomicUsize::new(0),
+            over: AtomicBool::new(false),
+            newest: Mutex::default(),
+        };
+        stage.set_room(room);
+        stage
+    }
+
+    /// Tells the size of the window from now on.
+    pub fn set_room(&self, (width, height): (usize, usize)) {
+        self.room.store((width as u32) << 16 | (height as u32 & 0xffff), Relaxed);
+    }
+
+    /// Frames drawn before the first can be seen, and how many there are to draw, itself among them.
+    pub fn progress(&self) -> (usize, usize) {
+        (self.prepared.load(Relaxed), self.parts.len() + 1)
+    }
+
+    /// True when the last frame of a show played once has been taken.
+    pub fn is_over(&self) -> bool {
+        self.over.load(Relaxed) && !self.newest().0
+    }
+
+    /// Swaps the newest frame into `picture` and returns true if there is one not taken yet.
+    pub fn take(&self, picture: &mut Picture) -> bool {
+        let mut newest = self.newest();
+        let fresh = newest.0;
+        if fresh {
+            newest.0 = false;
+            swap(&mut newest.1, picture);
+        }
+        fresh
+    }
+
+    fn newest(&self) -> MutexGuard<'_, (bool, Picture)> {
+        self.newest.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Draws until the show is over; the job.
+    pub fn perform(&self) {
+        let mut renderer = Renderer::default();
+        let mut picture = Picture::default();
+        for part in self.parts.clone() {
+            self.draw(&mut renderer, show::start(part), DRAFT, &mut picture);
+            self.prepared.fetch_add(1, Relaxed);
+        }
+        let mut live = Live::new(MEDIUM, ULTRA);
+        let mut last = None;
+        let start = Instant::now();
+        while let Some(n) = self.clock.frame(start.elapsed()) {
+            if last == Some(n) {
+                std::thread::sleep(until_next(start.elapsed()));
+                continue;
+            }
+            last = Some(n);
+            let began = Instant::now();
+            self.draw(&mut renderer, n, self.quality.unwrap_or(live.level()), &mut picture);
+            live.measured(began.elapsed());
+            let mut newest = self.newest();
+            newest.0 = true;
+            swap(&mut newest.1, &mut picture);
+        }
+        self.over.store(true, Relaxed);
+    }
+
+    /// Draws frame `n` no larger than the window: what would be scaled down need not be drawn.
+    fn draw(&self, renderer: &mut Renderer, n: u64, quality: usize, picture: &mut Picture) {
+        let room = self.room.load(Relaxed);
+        let fitted = fit::rect(self.size, ((room >> 16) as usize, (room & 0xffff) as usize));
+        let (width, height) = self.size;
+        picture.size = (width.min(fitted.width), height.min(fitted.height));
+        let (width, height) = picture.size;
+        picture.pixels.resize(width * height, 0);
+        let quality = &Quality::PRESETS[quality].1;
+        show::frame(renderer, n, (width as u32, height as u32), quality, &mut picture.pixels);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn options<'a>() -> Options<'a> {
+        match super::super::args::parse(&[]) {
+            Ok(super::super::args::Request::Run(options)) => options,
+            _ => unreachable!(),
+        }
+    }
+
+    #[test]
+    fn live_quality_moves_between_the_presets_meant_for_playing() {
+        assert_eq!(Quality::PRESETS[DRAFT].0, "draft");
+        assert_eq!(Quality::PRESETS[MEDIUM].0, "medium");
+        assert_eq!(Quality::PRESETS[ULTRA].0, "ultra");
+    }
+
+    #[test]
+    fn playing_once_from_near_the_end_leaves_the_last_frame_and_is_over_when_it_is_taken() {
+        let o = Options {
+            once: true,
+            from: show::PARTS[0].frames - 3,
+            scene: Some(0),
+            size: (32, 18),
+            ..options()
+        };
+        let stage = Stage::new(&o, (64, 64));
+        stage.perform();
+        assert_eq!(stage.progress(), (1, 2));
+        assert!(!stage.is_over(), "the last frame has not been seen");
+        let mut picture = Picture::default();
+        assert!(stage.take(&mut picture));
+        assert_eq!((picture.size, picture.pixels.len()), ((32, 18), 32 * 18));
+        assert!(!stage.take(&mut picture), "a frame is taken once");
+        assert!(stage.is_over());
+    }
+
+    #[test]
+    fn a_smaller_window_is_drawn_smaller_in_the_same_shape() {
+        let stage = Stage::new(&Options { size: (320, 180), ..options() }, (160, 400));
+        let mut picture = Picture::default();
+        stage.draw(&mut Renderer::default(), 0, DRAFT, &mut picture);
+        assert_eq!(picture.size, (160, 90));
+        stage.set_room((4000, 3000));
+        stage.draw(&mut Renderer::default(), 0, DRAFT, &mut picture);
+        assert_eq!(picture.size, (320, 180));
+    }
+}
