@@ -67,6 +67,11 @@ impl Boxes {
     }
 }
 
+/// Footprint, world units, from which on what a mirrored ray hits dissolves into the scene's
+/// ambient light, and how fast: it is gone one unit per gain later.
+const BLUR_FROM: f32 = 0.2;
+const BLUR_GAIN: f32 = 1.2;
+
 /// Lists with fewer packets than this are traced against all occluders: culling would cost more.
 const CULL_FROM: usize = 6;
 
@@ -202,6 +207,13 @@ fn shade_packet(
         let (sky, seen) = shade::background(&scene.background, rays, spread);
         light += (weight * sky) & !solid;
         id = solid.select(id, seen);
+    }
+    if level > 0 {
+        // What a rough mirror sees far off dissolves into the mean light around it.
+        let width = spread * hit.t - F::splat(BLUR_FROM);
+        let blur = (width * F::splat(BLUR_GAIN)).fast_max(F::ZERO).fast_min(F::ONE) & solid;
+        light += weight * shade::ambient(stage, rays.direction) * blur;
+        weight = weight * (F::ONE - blur);
     }
     let mut found = Found {
         light,

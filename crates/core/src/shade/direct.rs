@@ -43,12 +43,17 @@ pub struct Local {
     pub rest: V3,
 }
 
+/// Mean light from the half space around a unit direction, by its height.
+pub fn ambient(stage: &Stage, direction: V3) -> V3 {
+    let [below, above] = stage.scene.ambient;
+    let x = direction.y * F::splat(0.5) + F::splat(0.5);
+    V3::splat(below) + V3::splat(above - below) * x
+}
+
 /// Adds the light from all around (by the normal's height) and the surface's own to that of the
 /// lamps; what a mirror takes away is missing from the diffuse part.
 pub fn local(stage: &Stage, s: &Surface, split: &Split, lit: Lit) -> Local {
-    let [below, above] = stage.scene.ambient;
-    let x = s.normal.y * F::splat(0.5) + F::splat(0.5);
-    let ambient = V3::splat(below) + V3::splat(above - below) * x;
+    let ambient = ambient(stage, s.normal);
     let mirrored = split.reflectance * s.value(Channel::Reflection);
     let kept = (V3::splat(Vec3::ONE) - mirrored) * s.value(Channel::Diffuse);
     Local { irradiance: (lit.irradiance + ambient) * kept, rest: lit.highlight + s.colour(Channel::Emission) }
