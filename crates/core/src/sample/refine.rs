@@ -145,11 +145,13 @@ fn shadow_casters(stage: &Stage, samples: &Samples) -> [u64; MAX_LAMPS] {
 /// Marks the edge pixels in the tile and returns those of its neighbours.
 fn collect(edges: &[[bool; GRID]; GRID], tile: &mut Tile) -> Borders {
     let mut borders = Borders { corner: edges[TILE][TILE], ..Borders::default() };
-    for i in 0..TILE {
-        tile.edges[i] = (0..TILE).fold(0, |word, x| word | (edges[i][x] as u64) << x);
-        borders.right |= (edges[i][TILE] as u64) << i;
-        borders.bottom |= (edges[TILE][i] as u64) << i;
+    let word =
+        |bits: &mut dyn Iterator<Item = bool>| bits.zip(0..TILE).fold(0, |w, (b, i)| w | (b as u64) << i);
+    for (row, edges) in tile.edges.iter_mut().zip(edges) {
+        *row = word(&mut edges.iter().copied());
     }
+    borders.right = word(&mut edges.iter().map(|row| row[TILE]));
+    borders.bottom = word(&mut edges[TILE].iter().copied());
     borders
 }
 
@@ -176,7 +178,8 @@ impl Corners<'_> {
     fn is_edge(&self, stage: &Stage) -> bool {
         let limit = 2.0 * stage.quality.tolerance;
         let contrast = |s: Sample, first: Sample| (s.display() - first.display()).abs().max_element();
-        !(self.same_surface() && self.same_signature()) && !self.all(|s, first| contrast(s, first) <= limit)
+        let alike = self.same_surface() && self.same_signature();
+        !alike && !self.all(|s, first| contrast(s, first) <= limit)
     }
 
     /// Whether the bilinear value at the centre is within tolerance of the true one; within a
