@@ -5,34 +5,39 @@
 //! The standard macro `is_x86_feature_detected!` is no help: in a build that assumes AVX2 it is the
 //! constant `true`.
 //!
-//! The ordinary build starts at `main`. The size build (`cfg(luc_size)`, made by `cargo pack`) has
-//! neither glibc's start code nor Rust's, which cost 1 to 2 kB: the system jumps to `_start`, which
-//! hands argument count, arguments and environment to the functions of `.init_array` as glibc would
-//! (the standard library notes its arguments there, so `std::env::args_os` works), calls [`run`],
+//! In the ordinary build the question is an initializer, which the C library calls before `main`:
+//! even Rust's own start code, once inlined into `main`, has AVX instructions in it.
+//!
+//! The size build (`cfg(luc_size)`, made by `cargo pack`) has neither glibc's start code nor
+//! Rust's, which cost 1 to 2 kB: the system jumps to `_start`, which hands argument count,
+//! arguments and environment to the functions of `.init_array` as glibc would (the standard
+//! library notes its arguments there, so `std::env::args_os` works), calls [`run`](super::run),
 //! and leaves by C's `exit`. Nothing flushes Rust's standard output on that way: `run` must flush
 //! what it writes.
 
-use super::run;
+#![cfg(all(target_arch = "x86_64", unix))]
+
+use core::arch::x86_64::{__cpuid_count, _xgetbv};
 
 /// What a processor without AVX2 is told. The launcher of the packed file says the same.
-#[cfg(target_arch = "x86_64")]
 const NEEDS_AVX2: &str = "luc needs a CPU with AVX2, and this one has none\n";
 
-#[cfg(target_arch = "x86_64")]
 unsafe extern "C" {
     fn write(file: i32, bytes: *const u8, length: usize) -> isize;
-    fn exit(code: i32) -> !;
+    fn _exit(code: i32) -> !;
 }
+
+#[cfg(not(luc_size))]
+#[used]
+#[cfg_attr(target_vendor = "apple", unsafe(link_section = "__DATA,__mod_init_func"))]
+#[cfg_attr(not(target_vendor = "apple"), unsafe(link_section = ".init_array"))]
+static BEFORE_MAIN: extern "C" fn() = require_avx2;
 
 /// Ends the program with a sentence, exit code 2, if the processor or the system lacks AVX2.
 ///
-/// Not inlined, and it calls C's `write` and `exit` itself, so that no AVX instruction can come
-/// before the check.
-#[cfg(target_arch = "x86_64")]
+/// It calls C itself and is never inlined, so that no AVX instruction can slip in.
 #[inline(never)]
-fn require_avx2() {
-    use core::arch::x86_64::{__cpuid_count, _xgetbv};
-
+extern "C" fn require_avx2() {
     /// The part of the wide-register check that may run only where `xgetbv` exists.
     #[target_feature(enable = "xsave")]
     fn wide_registers_saved() -> bool {
@@ -48,27 +53,20 @@ fn require_avx2() {
         && unsafe { wide_registers_saved() }
         && __cpuid_count(7, 0).ebx & AVX2 != 0;
     if !avx2 {
-        // SAFETY: the pointer and the length are those of one string; `exit` does not return.
+        // SAFETY: the pointer and the length are those of one string.
         unsafe {
             write(2, NEEDS_AVX2.as_ptr(), NEEDS_AVX2.len());
-            exit(2);
+            _exit(2)
         }
     }
-}
-
-/// Start of the ordinary build.
-#[cfg(not(luc_size))]
-pub fn start() -> ! {
-    #[cfg(target_arch = "x86_64")]
-    require_avx2();
-    std::process::exit(run())
 }
 
 #[cfg(luc_size)]
 mod size {
     //! Start of the size build: Linux on x86-64.
 
-    use super::{exit, require_avx2, run};
+    use super::require_avx2;
+    use crate::run;
 
     // The system leaves the argument count at the stack pointer, and the arguments above it. The
     // stack is aligned to 16 here, and a call must find it so.
@@ -89,6 +87,7 @@ mod size {
         static __init_array_start: [Initializer; 0];
         static __init_array_end: [Initializer; 0];
         fn signal(number: i32, action: usize) -> usize;
+        fn exit(code: i32) -> !;
     }
 
     /// A write to a closed pipe is an error to report, as Rust's own start code has it.

@@ -5,10 +5,10 @@ mod entry;
 
 #[cfg(not(luc_size))]
 fn main() {
-    entry::start()
+    std::process::exit(run())
 }
 
-/// The program: what both entries call once the processor is known to do; returns the exit code.
+/// The program, which both entries call (see [`entry`]); returns the exit code.
 #[inline(never)]
 fn run() -> i32 {
     let mut renderer = luc_core::render::Renderer::default();

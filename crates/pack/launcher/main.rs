@@ -6,9 +6,9 @@
 //! environment. Where the system forbids that (`vm.memfd_noexec`), a private file in
 //! `$XDG_RUNTIME_DIR` or `/tmp` serves, which loses its name before the program starts.
 //!
-//! A damaged file must end in a sentence and a code other than 0: everything behind the launcher
-//! itself is under a checksum that is compared first, the decoders always end, and should damage
-//! in the launcher's own code send it astray, the alarm clock ends the process.
+//! A damaged file must end in a sentence and a code other than 0: the whole file is under a
+//! checksum that is compared first, the decoders always end, and should damage in the few
+//! instructions that compare it send them astray, the alarm clock ends the process.
 //!
 //! There is no panic in here: the handler below names a function that doesn't exist, so that the
 //! link fails if one creeps in.
@@ -22,7 +22,7 @@ mod codec;
 mod system;
 
 use codec::checksum::crc32;
-use codec::format::{HEADER, Header, LOADED_AT, NEEDS_AVX2};
+use codec::format::{CHECKSUM, HEADER, Header, LOADED_AT, NEEDS_AVX2};
 use core::slice;
 use system::*;
 
@@ -52,8 +52,8 @@ unsafe extern "C" {
 }
 
 const DAMAGED: &[u8] = b": damaged file\n";
-/// Seconds after which a launcher that is still decoding must be astray.
-const PATIENCE: usize = 30;
+/// Seconds after which a launcher that hasn't even looked at its file must be astray.
+const PATIENCE: usize = 5;
 
 unsafe extern "C" fn start(stack: *const usize) -> ! {
     alarm(PATIENCE);
@@ -63,23 +63,28 @@ unsafe extern "C" fn start(stack: *const usize) -> ! {
     // The payload's length must be believed before the checksum can be, so that of the whole file
     // is compared first.
     let payload_at = (&raw const packed).addr() + HEADER;
-    let length = payload_at - LOADED_AT + header.payload as usize;
-    if own_length().is_some_and(|found| found != length) {
+    let checksum_at = payload_at + header.payload as usize;
+    let covered = checksum_at - LOADED_AT;
+    if own_length().is_some_and(|length| length != covered + CHECKSUM) {
         die(name, DAMAGED, 3);
     }
-    // SAFETY: header and payload lie one behind the other; the first word is the checksum.
-    let (covered, payload) = unsafe {
-        let covered = (&raw const header.output_crc).cast::<u8>();
-        let payload = slice::from_raw_parts(payload_at as *const u8, header.payload as usize);
-        (slice::from_raw_parts(covered, HEADER - 4 + payload.len()), payload)
+    // SAFETY: the file is in memory as a whole, and that long.
+    let (file, payload, checksum) = unsafe {
+        (
+            slice::from_raw_parts(LOADED_AT as *const u8, covered),
+            slice::from_raw_parts(payload_at as *const u8, header.payload as usize),
+            (checksum_at as *const u32).read_unaligned(),
+        )
     };
-    if crc32(covered) != header.file_crc {
+    if crc32(file) != checksum {
         die(name, DAMAGED, 3);
     }
     if header.flags & NEEDS_AVX2 != 0 && !has_avx2() {
         die(name, b" needs a CPU with AVX2, and this one has none\n", 2);
     }
 
+    // Decoding may take longer: on no machine of use a second for 16 kB.
+    alarm(PATIENCE + (header.output as usize >> 14));
     // SAFETY: fresh memory of that many bytes.
     let program =
         unsafe { slice::from_raw_parts_mut(memory(header.output as usize), header.output as usize) };

@@ -19,7 +19,7 @@ mod error;
 pub mod report;
 pub mod size_build;
 
-use codec::format::{ELF_HEADERS, HEADER, Header, LOADED_AT, NAME, NEEDS_AVX2};
+use codec::format::{CHECKSUM, ELF_HEADERS, HEADER, Header, LOADED_AT, NAME, NEEDS_AVX2};
 use codec::{checksum::crc32, filter};
 pub use error::Error;
 
@@ -103,8 +103,7 @@ pub fn pack_elf_as(file: &[u8], options: &Options) -> Result<Packed, Error> {
     for (to, from) in name.iter_mut().zip(options.name.bytes()) {
         *to = from;
     }
-    let mut header = Header {
-        file_crc: 0,
+    let header = Header {
         output_crc: crc32(&stripped),
         output: stripped.len() as u32,
         payload: payload.len() as u32,
@@ -114,18 +113,15 @@ pub fn pack_elf_as(file: &[u8], options: &Options) -> Result<Packed, Error> {
         base,
         name,
     };
-    let mut covered = header.bytes()[4..].to_vec();
-    covered.extend(&payload);
-    header.file_crc = crc32(&covered);
-
     let code_length = launcher.len().next_multiple_of(4);
-    let length = ELF_HEADERS + code_length + HEADER + payload.len();
+    let length = ELF_HEADERS + code_length + HEADER + payload.len() + CHECKSUM;
     let address = LOADED_AT as u64;
     let mut file = elf::launcher_headers(address, address + ELF_HEADERS as u64, length as u64);
     file.extend(launcher);
     file.resize(ELF_HEADERS + code_length, 0);
     file.extend(header.bytes());
     file.extend(&payload);
+    file.extend(crc32(&file).to_le_bytes());
     Ok(Packed { file, stripped, payload: payload.len() })
 }
 

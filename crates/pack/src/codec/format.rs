@@ -1,15 +1,14 @@
 //! The header between the launcher's code and the payload of a packed file.
 //!
-//! Eight little-endian words and a name; the payload follows. The first word is the CRC-32 of
-//! everything behind it up to the end of the file, and is compared before anything else is
-//! believed; [`Header::output_crc`] is compared after decoding.
+//! Seven little-endian words and a name; the payload follows, and then, as the file's last word,
+//! the CRC-32 of everything before it, the launcher included. That is compared before anything in
+//! the header but the payload's length is believed; [`Header::output_crc`] is compared after
+//! decoding.
 
 /// A header's words by name.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(C)]
 pub struct Header {
-    /// CRC-32 of the rest of the header, the name and the payload.
-    pub file_crc: u32,
     /// CRC-32 of the program.
     pub output_crc: u32,
     /// Length of the program, bytes.
@@ -45,11 +44,13 @@ pub const NEEDS_AVX2: u32 = 1;
 /// Length of the header, bytes.
 pub const HEADER: usize = size_of::<Header>();
 
+/// Length of the checksum at the file's end, bytes.
+pub const CHECKSUM: usize = 4;
+
 impl Header {
     /// The header as it stands in the file.
     pub fn bytes(&self) -> [u8; HEADER] {
         let words = [
-            self.file_crc,
             self.output_crc,
             self.output,
             self.payload,

@@ -18,10 +18,8 @@ use super::x86::{Part, Walker, mix};
 
 /// Number of contexts.
 pub const CONTEXTS: usize = 22;
-/// Opinions, in fours: two for each context, the match model's, and a constant.
-const FOURS: usize = (CONTEXTS * 2 + 2).div_ceil(4);
-const MATCH: usize = CONTEXTS * 2;
-const BIAS: usize = CONTEXTS * 2 + 1;
+/// Opinions, in fours: two for each context, then the match model's and a constant.
+const FOURS: usize = CONTEXTS / 2 + 1;
 /// Mixers.
 const MIXERS: usize = 3;
 /// Sets of weights of each mixer.
@@ -55,48 +53,56 @@ struct Slot {
 /// Finer probabilities from coarse ones: 33 steps over the stretched range, interpolated.
 type Correction = [u16; 33];
 
-/// The model. Large; it is never made but by zeroing memory.
+/// The model. Large; it is never made but by zeroing memory. The small parts come first, where
+/// instructions of the launcher reach them with short operands.
+#[repr(C)]
 pub struct Model {
-    slots: [[[Slot; 16]; 1 << ROW_BITS]; CONTEXTS],
-    /// Meaning of histories, by context: probability of a one.
-    meaning: [[u16; 256]; CONTEXTS],
-    weights: [[Vector<FOURS>; SETS]; MIXERS],
-    by_partial: [Correction; 256],
-    by_byte: [Correction; 1 << 16],
-    stretch: Stretch,
-    /// Position after the last occurrence of a hashed run of bytes.
-    last_seen: [u32; 1 << MATCH_BITS],
-    /// How often a match of a length held: probability.
-    match_holds: [u16; 32],
-
     walker: Walker,
     /// The bits of the byte so far, behind a leading one.
     partial: u32,
+    /// The last eight bytes, the last one lowest.
+    last8: u64,
     /// Bytes done.
     position: usize,
-    /// The last byte.
-    last: u32,
-    /// The contexts' hashes for this byte.
-    hashes: [u32; CONTEXTS],
-    /// Their rows for this half of the byte.
-    rows: [u32; CONTEXTS],
-    /// Their slots' checks for this half of the byte.
-    checks: [u8; CONTEXTS],
-    /// Places within the rows for this bit.
-    places: [u32; CONTEXTS],
-    opinions: Vector<FOURS>,
-    /// Sets of weights, by mixer: the parts that stand for a whole byte, and those in use.
-    selectors: [usize; MIXERS],
-    sets: [usize; MIXERS],
-    /// What each mixer said.
-    mixed: [f32; MIXERS],
-    /// Where the corrections came from: index and step.
-    corrected: [(usize, usize); 2],
     /// Where the match goes on, and how long it has been; 0 without one.
     match_at: usize,
     match_length: usize,
     /// The byte that the match expects, behind a leading one; 0 without one or once it failed.
     expected: u32,
+    /// Sets of weights, by mixer: the parts that stand for a whole byte, and those in use.
+    selectors: [u32; MIXERS],
+    sets: [u32; MIXERS],
+    /// What each mixer said.
+    mixed: [f32; MIXERS],
+    /// Where the corrections came from: by the byte before, and the step.
+    after: usize,
+    nearer: usize,
+    opinions: Vector<FOURS>,
+    found: [Found; CONTEXTS],
+    /// How often a match of a length held: probability.
+    match_holds: [u16; 32],
+    /// Meaning of histories, by context: probability of a one.
+    meaning: [[u16; 256]; CONTEXTS],
+    by_partial: [Correction; 256],
+    stretch: Stretch,
+    weights: [[Vector<FOURS>; SETS]; MIXERS],
+    by_byte: [Correction; 1 << 16],
+    /// Position after the last occurrence of a hashed run of bytes.
+    last_seen: [u32; 1 << MATCH_BITS],
+    slots: [[[Slot; 16]; 1 << ROW_BITS]; CONTEXTS],
+}
+
+/// Where a context keeps what it knows.
+#[derive(Clone, Copy)]
+struct Found {
+    /// Its hash for this byte.
+    hash: u32,
+    /// Its row for this half of the byte.
+    row: u32,
+    /// The slot in the row for this bit.
+    place: u8,
+    /// What that slot's check is if it is this context's.
+    check: u8,
 }
 
 impl Model {
@@ -124,60 +130,55 @@ impl Model {
         for correction in self.by_partial.iter_mut().chain(&mut self.by_byte) {
             *correction = first;
         }
-        self.end_byte(&[]);
+        self.partial = 1;
+        self.look_around();
     }
 
     /// Probability of a one, in 16 bits, never quite 0 or 1.
     pub fn predict(&mut self) -> u32 {
         let partial = self.partial;
         let bits = 31 - partial.leading_zeros();
-        if bits & 3 == 0 {
-            self.find_rows();
-        }
         // The bits of this half of the byte, behind a leading one.
-        let half = if bits < 4 { partial } else { partial & ((1 << (bits - 4)) - 1) | 1 << (bits - 4) };
+        let half = if bits < 4 { partial } else { partial & 15 >> (8 - bits) | 1 << (bits & 3) };
         let stretch = &self.stretch;
-        let opinions = self.opinions.numbers_mut();
-        for i in 0..CONTEXTS {
-            let place = (self.checks[i] as u32 >> 3 ^ half) & 15;
-            self.places[i] = place;
-            let slot = &mut self.slots[i][self.rows[i] as usize & ((1 << ROW_BITS) - 1)][place as usize & 15];
-            let check = self.checks[i] | 1;
-            if slot.check != check {
-                *slot = Slot { probability: 1 << 15, check, seen: 0, history: 0 };
+        let opinions = self.opinions.numbers_mut().as_flattened_mut();
+        let contexts = self.found.iter_mut().zip(&mut self.slots).zip(&self.meaning);
+        for (((found, rows), meaning), opinion) in contexts.zip(opinions.as_chunks_mut::<2>().0) {
+            if bits & 3 == 0 {
+                let hash = mix(found.hash, partial);
+                found.row = hash >> (32 - ROW_BITS);
+                found.check = hash as u8 | 1;
             }
-            let (mut counted, mut meant) = (0.0, 0.0);
+            found.place = (found.check >> 4 ^ half as u8) & 15;
+            let slot = &mut rows[found.row as usize & ((1 << ROW_BITS) - 1)][usize::from(found.place) & 15];
+            if slot.check != found.check {
+                *slot = Slot { probability: 1 << 15, check: found.check, seen: 0, history: 0 };
+            }
+            *opinion = [0.0; 2];
             if slot.seen != 0 {
-                counted = stretch.of(slot.probability);
-                meant = stretch.of(self.meaning[i][usize::from(slot.history)]);
+                *opinion = [stretch.of(slot.probability), stretch.of(meaning[usize::from(slot.history)])];
             }
-            opinions[i / 2][i % 2 * 2] = counted;
-            opinions[i / 2][i % 2 * 2 + 1] = meant;
         }
-        opinions[BIAS / 4][BIAS % 4] = 0.4;
         let mut matched = 0.0;
-        if self.expected != 0 {
-            let rest = 8 - bits;
-            if self.expected >> rest == partial {
-                matched = stretch.of(self.match_holds[self.match_length.min(31) & 31]);
-                if self.expected >> (rest - 1) & 1 == 0 {
-                    matched = -matched;
-                }
-            } else {
-                self.expected = 0;
-                self.match_length = 0;
+        let rest = 8 - bits;
+        if self.expected >> rest == partial {
+            matched = stretch.of(self.match_holds[self.match_length.min(31) & 31]);
+            if self.expected >> (rest - 1) & 1 == 0 {
+                matched = -matched;
             }
+        } else {
+            self.expected = 0;
+            self.match_length = 0;
         }
-        opinions[MATCH / 4][MATCH % 4] = matched;
+        self.opinions.numbers_mut()[CONTEXTS / 2] = [matched, 0.4, 0.0, 0.0];
 
-        let agreed = (self.match_length.min(15) as u32 + 1).ilog2() as usize;
-        self.sets =
-            [self.selectors[0] * 8 + bits as usize, partial as usize | agreed << 8, self.selectors[2]];
+        let agreed = (self.match_length.min(15) as u32 + 1).ilog2();
+        let [state, _, opcode] = self.selectors;
+        self.sets = [state * 8 + bits, partial | agreed << 8, opcode];
         let mut sum = 0.0;
-        for mixer in 0..MIXERS {
-            let weights = &self.weights[mixer][self.sets[mixer] & (SETS - 1)];
-            let dot = weights.dot(&self.opinions);
-            self.mixed[mixer] = squash(dot);
+        for ((mixed, set), weights) in self.mixed.iter_mut().zip(self.sets).zip(&self.weights) {
+            let dot = weights[set as usize & (SETS - 1)].dot(&self.opinions);
+            *mixed = squash(dot);
             sum += dot;
         }
         let mean = sum * (1.0 / MIXERS as f32);
@@ -185,11 +186,10 @@ impl Model {
         let position = (mean.clamp(-7.99, 7.99) + 8.0) * 2.0;
         let step = position as usize & 31;
         let part = position - step as f32;
-        let nearer = step + usize::from(part > 0.5);
-        let after = (self.last << 8 | partial) as usize & 0xffff;
-        self.corrected = [(partial as usize & 255, nearer), (after, nearer)];
+        self.nearer = step + usize::from(part > 0.5);
+        self.after = (self.last8 << 8) as usize & 0xff00 | partial as usize & 0xff;
         let mut corrected = 0.0;
-        for correction in [&self.by_partial[partial as usize & 255], &self.by_byte[after]] {
+        for correction in [&self.by_partial[self.after & 0xff], &self.by_byte[self.after & 0xffff]] {
             corrected += f32::from(correction[step]) * (1.0 - part) + f32::from(correction[step + 1]) * part;
         }
         let probability = squash(mean) * 32768.0 + corrected * 0.25;
@@ -199,49 +199,46 @@ impl Model {
     /// Learns the bit that came.
     pub fn learn(&mut self, bit: u32) {
         let rate = RATE + EARLY_RATE / (1.0 + self.position as f32 * (1.0 / 4000.0));
-        for mixer in 0..MIXERS {
-            let error = bit as f32 - self.mixed[mixer];
-            let weights = &mut self.weights[mixer][self.sets[mixer] & (SETS - 1)];
-            weights.add_scaled(error * rate, &self.opinions);
+        for ((mixed, set), weights) in self.mixed.iter().zip(self.sets).zip(&mut self.weights) {
+            let error = bit as f32 - mixed;
+            weights[set as usize & (SETS - 1)].add_scaled(error * rate, &self.opinions);
         }
-        for i in 0..CONTEXTS {
-            let row = &mut self.slots[i][self.rows[i] as usize & ((1 << ROW_BITS) - 1)];
-            let slot = &mut row[self.places[i] as usize & 15];
+        for ((found, rows), meaning) in self.found.iter().zip(&mut self.slots).zip(&mut self.meaning) {
+            let slot = &mut rows[found.row as usize & ((1 << ROW_BITS) - 1)][usize::from(found.place) & 15];
             if slot.seen > 0 {
-                toward(&mut self.meaning[i][usize::from(slot.history)], bit, 50);
+                toward(&mut meaning[usize::from(slot.history)], bit, 50, 1);
             }
-            let target = if bit == 1 { 65535 } else { 0 };
-            let probability = i32::from(slot.probability);
-            slot.probability =
-                (probability + (target - probability) * 2 / (i32::from(slot.seen) * 2 + 3)) as u16;
+            toward(&mut slot.probability, bit, i32::from(slot.seen) * 2 + 3, 2);
             slot.seen += u8::from(slot.seen < SETTLED);
             slot.history = next_history(slot.history, bit);
         }
+        let rest = self.partial.leading_zeros() - 24;
         if self.expected != 0 {
-            let rest = self.partial.leading_zeros() - 23;
-            let held = u32::from(self.expected >> (rest - 1) & 1 == bit);
-            toward(&mut self.match_holds[self.match_length.min(31) & 31], held, 32);
+            let held = u32::from(self.expected >> rest & 1 == bit);
+            toward(&mut self.match_holds[self.match_length.min(31) & 31], held, 32, 1);
         }
-        let [(partial, nearer), (after, _)] = self.corrected;
-        toward(&mut self.by_partial[partial & 255][nearer.min(32)], bit, 40);
-        toward(&mut self.by_byte[after & 0xffff][nearer.min(32)], bit, 40);
+        let nearer = self.nearer.min(32);
+        toward(&mut self.by_partial[self.after & 0xff][nearer], bit, 40, 1);
+        toward(&mut self.by_byte[self.after & 0xffff][nearer], bit, 40, 1);
         self.partial = self.partial << 1 | bit;
     }
 
     /// Goes on to the next byte; `bytes` is all up to now.
     pub fn end_byte(&mut self, bytes: &[u8]) {
-        let back =
-            |n: usize| u32::from(bytes.len().checked_sub(n).and_then(|i| bytes.get(i)).copied().unwrap_or(0));
-        self.position = bytes.len();
+        let byte = self.partial as u8;
         self.partial = 1;
-        if let Some(&last) = bytes.last() {
-            self.last = u32::from(last);
-            self.walker.step(last);
-        }
-        let c1 = self.last;
-        let c4 = back(4);
-        let last4 = c1 | back(2) << 8 | back(3) << 16 | c4 << 24;
-        let before4 = back(5) | back(6) << 8 | back(7) << 16 | back(8) << 24;
+        self.position = bytes.len();
+        self.last8 = self.last8 << 8 | u64::from(byte);
+        self.walker.step(byte);
+        self.look_around();
+        self.follow_match(bytes);
+    }
+
+    /// What the contexts see before the next byte.
+    fn look_around(&mut self) {
+        let last4 = self.last8 as u32;
+        let before4 = (self.last8 >> 32) as u32;
+        let (c1, c4) = (last4 & 0xff, last4 >> 24);
         let walker = &self.walker;
         let state = walker.part as u32 | u32::from(walker.left) << 4 | u32::from(walker.map) << 8;
         let current = mix(walker.prefix ^ walker.opcode << 16, walker.modrm | state << 20);
@@ -270,55 +267,43 @@ impl Model {
             last4 & 0xff_ff00,
             last4 & 0xff00_ff00,
             mix(c4, column),
-            mix(c4 << 8 | back(8), column),
-            mix(mix(current, field), p0),
+            mix(c4 << 8 | before4 >> 24, column),
+            mix(one, field),
             mix(mix(mix(p0, p1), p2), mix(p3, current ^ field)),
         ];
-        for (i, (hash, seen)) in self.hashes.iter_mut().zip(seen).enumerate() {
-            *hash = mix(seen, i as u32 + 1);
+        for (i, (found, seen)) in self.found.iter_mut().zip(seen).enumerate() {
+            found.hash = mix(seen, i as u32 + 1);
         }
-        let left = usize::from(walker.left.min(7));
-        self.selectors = [walker.part as usize | left << 3, 0, walker.opcode as usize & 1023];
-        self.follow_match(bytes, mix(last4, before4 & 0xff));
+        let left = u32::from(walker.left.min(7));
+        self.selectors = [walker.part as u32 | left << 3, 0, walker.opcode & 1023];
     }
 
     /// Keeps to the run that matches what came last, or looks for one.
-    fn follow_match(&mut self, bytes: &[u8], hash: u32) {
-        let here = bytes.len();
-        let held = self.match_length > 0 && bytes.get(self.match_at) == bytes.last();
-        if held {
+    fn follow_match(&mut self, bytes: &[u8]) {
+        let hash = mix(self.last8 as u32, (self.last8 >> 32) as u32 & 0xff);
+        let entry = &mut self.last_seen[(hash >> (32 - MATCH_BITS)) as usize & ((1 << MATCH_BITS) - 1)];
+        if self.match_length > 0 {
             self.match_at += 1;
             self.match_length += 1;
         } else {
-            self.match_length = 0;
-        }
-        let entry = &mut self.last_seen[(hash >> (32 - MATCH_BITS)) as usize & ((1 << MATCH_BITS) - 1)];
-        if self.match_length == 0 {
             self.match_at = *entry as usize;
             let old = bytes.get(..self.match_at).unwrap_or(&[]);
             let equal = old.iter().rev().zip(bytes.iter().rev()).take(32).take_while(|(a, b)| a == b);
             self.match_length = equal.count();
         }
-        *entry = here as u32;
-        let expected = bytes.get(self.match_at).map_or(0, |&byte| u32::from(byte) | 256);
-        self.expected = if self.match_length > 0 { expected } else { 0 };
-    }
-
-    /// Finds the contexts' rows for the next four bits.
-    fn find_rows(&mut self) {
-        for i in 0..CONTEXTS {
-            let hash = mix(self.hashes[i], self.partial);
-            self.rows[i] = hash >> (32 - ROW_BITS);
-            self.checks[i] = hash as u8;
+        *entry = bytes.len() as u32;
+        self.expected = 0;
+        if self.match_length > 0 {
+            self.expected = bytes.get(self.match_at).map_or(0, |&byte| u32::from(byte) | 256);
         }
     }
 }
 
-/// Moves a probability of 16 bits toward the bit by one part in `divisor`.
-fn toward(probability: &mut u16, bit: u32, divisor: i32) {
+/// Moves a probability of 16 bits toward the bit by `part / divisor` of the way.
+fn toward(probability: &mut u16, bit: u32, divisor: i32, part: i32) {
     let target = if bit == 1 { 65535 } else { 0 };
     let old = i32::from(*probability);
-    *probability = (old + (target - old) / divisor) as u16;
+    *probability = (old + (target - old) * part / divisor) as u16;
 }
 
 /// The history after one more bit: its count goes up, and a large count of the other goes down,
@@ -333,4 +318,4 @@ fn next_history(history: u8, bit: u32) -> u8 {
 }
 
 // Not used by the arithmetic, but a wrong order of magnitude here would be a wrong model.
-const _: () = assert!(LIMIT > 8.0 && Part::Opcode as u8 == 0);
+const _: () = assert!(LIMIT > 8.0 && Part::Opcode as u8 == 0 && CONTEXTS.is_multiple_of(2));

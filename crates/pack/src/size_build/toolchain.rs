@@ -6,7 +6,7 @@
 
 use crate::Error;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::Command;
 
 /// A compiler and its cargo.
 #[derive(Debug)]
@@ -34,7 +34,6 @@ impl Toolchain {
                 .args(arguments)
                 .env_remove("LD_LIBRARY_PATH")
                 .current_dir(root)
-                .stdin(Stdio::null())
                 .output()
                 .ok()?;
             String::from_utf8(output.stdout).ok().filter(|_| output.status.success())
@@ -55,8 +54,7 @@ impl Toolchain {
     /// A cargo command of this toolchain, with the environment of any other taken out.
     pub fn cargo(&self) -> Command {
         let mut command = Command::new(&self.cargo);
-        // Cargo hands its standard input on to the compiler, which may take it for a program.
-        command.env("RUSTC", &self.rustc).stdin(Stdio::null());
+        command.env("RUSTC", &self.rustc);
         for variable in FOREIGN {
             command.env_remove(variable);
         }
