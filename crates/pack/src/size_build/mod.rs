@@ -7,6 +7,7 @@
 //! trimmed copies ([`trim`]) in a workspace of their own ([`workspace`]).
 
 mod edit;
+pub mod std_source;
 pub mod toolchain;
 pub mod trim;
 pub mod workspace;
@@ -70,6 +71,9 @@ pub fn build(root: &Path, output: &Path) -> Result<PathBuf, Error> {
         .env("RUSTC_BOOTSTRAP", "1")
         .env("CARGO_ENCODED_RUSTFLAGS", RUSTFLAGS.join("\x1f"))
         .env("CFLAGS_x86_64_unknown_linux_gnu", CFLAGS);
+    if let Some(source) = std_source::prepare(&toolchain.library, &output.join("std"))? {
+        command.env(std_source::VARIABLE, source);
+    }
     let status = command.status().map_err(Error::file(&toolchain.cargo))?;
     if !status.success() {
         return Err(Error::Command("the size build failed; cargo's messages are above".to_owned()));

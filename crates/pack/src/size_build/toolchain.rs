@@ -15,6 +15,8 @@ pub struct Toolchain {
     pub rustc: PathBuf,
     /// The cargo beside it.
     pub cargo: PathBuf,
+    /// The standard library's source.
+    pub library: PathBuf,
 }
 
 /// The oldest release that knows all that the size build asks for: 1.OLDEST.
@@ -48,7 +50,7 @@ impl Toolchain {
         let matches = version.map_or(true, |version| release.starts_with(version.trim()));
         let (rustc, cargo) = (sysroot.join("bin/rustc"), sysroot.join("bin/cargo"));
         let usable = complete && matches && minor(release)? >= OLDEST && rustc.is_file() && cargo.is_file();
-        usable.then_some(Toolchain { rustc, cargo })
+        usable.then_some(Toolchain { rustc, cargo, library: source.join("library") })
     }
 
     /// A cargo command of this toolchain, with the environment of any other taken out.

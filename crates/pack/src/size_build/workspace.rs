@@ -6,6 +6,7 @@
 //! crates have no registry to come from.
 
 use super::edit::{Source, write_if_new};
+use super::std_source::link;
 use super::toolchain::Toolchain;
 use super::trim;
 use crate::Error;
@@ -94,12 +95,7 @@ fn link_everything(root: &Path, workspace: &Path) -> Result<(), Error> {
         if hidden || name == "target" || name == "Cargo.toml" || name == "Cargo.lock" {
             continue;
         }
-        let link = workspace.join(&name);
-        if std::fs::read_link(&link).is_ok_and(|old| old == target) {
-            continue;
-        }
-        let _ = std::fs::remove_file(&link);
-        symlink(&target, &link).map_err(Error::file(&link))?;
+        link(&target, &workspace.join(&name))?;
     }
     // A link to what is no longer there would only be in the way.
     for entry in std::fs::read_dir(workspace).map_err(Error::file(workspace))?.flatten() {
@@ -108,16 +104,6 @@ fn link_everything(root: &Path, workspace: &Path) -> Result<(), Error> {
         }
     }
     Ok(())
-}
-
-#[cfg(unix)]
-fn symlink(target: &Path, link: &Path) -> std::io::Result<()> {
-    std::os::unix::fs::symlink(target, link)
-}
-
-#[cfg(not(unix))]
-fn symlink(_: &Path, _: &Path) -> std::io::Result<()> {
-    Err(std::io::ErrorKind::Unsupported.into())
 }
 
 /// A lock file in which the packages `replaced` come from no registry, as for local crates.
