@@ -1,4 +1,7 @@
 //! What the launcher asks of Linux, by bare system calls, and what compilers expect to find.
+//!
+//! There is no panic in here: the handler below names a function that doesn't exist, so that the
+//! link fails if one creeps in.
 
 use core::arch::asm;
 use core::ptr::null;
@@ -9,6 +12,7 @@ const WRITE: usize = 1;
 const CLOSE: usize = 3;
 const LSEEK: usize = 8;
 const MMAP: usize = 9;
+const MPROTECT: usize = 10;
 const ALARM: usize = 37;
 const UNLINK: usize = 87;
 const EXIT_GROUP: usize = 231;
@@ -67,30 +71,59 @@ pub fn write_all(file: usize, mut bytes: &[u8]) -> bool {
     true
 }
 
+/// Says the program's name, without the zeros behind it, and the sentence, and ends the process.
+#[inline(never)]
+pub fn die(name: &[u8], sentence: &[u8], code: usize) -> ! {
+    for byte in name {
+        if *byte != 0 {
+            write_all(2, core::slice::from_ref(byte));
+        }
+    }
+    write_all(2, sentence);
+    exit(code)
+}
+
+/// The sentence for a damaged file.
+pub const DAMAGED: &[u8] = b": damaged file\n";
+
 /// Fresh memory, all zeros; ends the process if there is none.
 pub fn memory(length: usize) -> *mut u8 {
+    memory_at(0, length)
+}
+
+/// Fresh memory, all zeros, near `address` if that isn't 0; at it, if the place is free.
+#[inline(never)]
+pub fn memory_at(address: usize, length: usize) -> *mut u8 {
     const READ_WRITE: usize = 3;
     const PRIVATE_ANONYMOUS: usize = 0x22;
     const NO_FILE: usize = usize::MAX;
     // At least a byte, since the system refuses to map nothing.
-    // SAFETY: the system chooses where the memory lies.
-    let address = unsafe { call(MMAP, 0, length + 1, READ_WRITE, PRIVATE_ANONYMOUS, NO_FILE) };
-    if address < 0 {
-        write_all(2, b"not enough memory\n");
-        exit(4);
+    // SAFETY: the system never takes a place that is in use.
+    let found = unsafe { call(MMAP, address, length + 1, READ_WRITE, PRIVATE_ANONYMOUS, NO_FILE) };
+    if found < 0 {
+        die(b"", b"not enough memory\n", 4);
     }
-    address as *mut u8
+    found as *mut u8
 }
 
-/// The length of the file that this launcher begins, if the system tells.
+/// Lets the processor execute what is in memory, and nobody change it any more.
+///
+/// # Safety
+/// Nothing else may lie in these pages.
+pub unsafe fn make_executable(address: usize, length: usize) {
+    const READ_EXECUTE: usize = 5;
+    // SAFETY: the caller's.
+    unsafe { call(MPROTECT, address, length, READ_EXECUTE, 0, 0) };
+}
+
+/// The length of the file that this launcher begins, if the system tells. The file stays open
+/// until the program starts.
 pub fn own_length() -> Option<usize> {
     const END: usize = 2;
     // SAFETY: the path ends with a zero; no memory is written.
     let length = unsafe {
         let file = call(OPEN, c"/proc/self/exe".as_ptr().addr(), O_CLOEXEC, 0, 0, 0);
-        let length = call(LSEEK, file as usize, 0, END, 0, 0);
-        call(CLOSE, file as usize, 0, 0, 0, 0);
-        length
+        call(LSEEK, file as usize, 0, END, 0, 0)
     };
     usize::try_from(length).ok()
 }
@@ -176,6 +209,15 @@ pub fn run_from_file(program: &[u8], arguments: *const usize, environment: *cons
             }
         }
     }
+}
+
+#[panic_handler]
+fn panic(_: &core::panic::PanicInfo) -> ! {
+    unsafe extern "C" {
+        fn the_launcher_must_not_panic() -> !;
+    }
+    // SAFETY: never linked.
+    unsafe { the_launcher_must_not_panic() }
 }
 
 /// What the compiler calls to copy memory.

@@ -1,7 +1,8 @@
 //! The packers' encoding halves.
 
-use crate::codec::cm::Interval;
+use crate::codec::interval::Interval;
 use crate::codec::model::Model;
+use crate::codec::small;
 
 /// Memory of zeros as a model.
 pub fn new_model() -> Box<Model> {
@@ -20,39 +21,70 @@ pub fn new_model() -> Box<Model> {
 /// Context mixing: what [`crate::codec::cm::decode`] decodes.
 pub fn cm(bytes: &[u8]) -> Vec<u8> {
     let mut model = new_model();
-    let mut interval = Interval::WHOLE;
-    let mut packed = Vec::new();
+    let mut encoder = Encoder::new();
     model.start();
     for (position, &byte) in bytes.iter().enumerate() {
-        for shift in (0..8).rev() {
-            let bit = u32::from(byte) >> shift & 1;
-            let split = interval.split(model.predict());
-            interval.narrow(split, bit);
-            let mut top = (interval.high >> 24) as u8;
-            while interval.settled() {
-                packed.push(top);
-                top = (interval.high >> 24) as u8;
-            }
+        for bit in bits(byte) {
+            encoder.bit(bit, model.predict());
             model.learn(bit);
         }
         model.end_byte(&bytes[..position + 1]);
     }
-    // Any number in the interval will do, and missing bytes read as zeros.
-    packed.extend(interval.high.to_be_bytes());
-    let end = shortest_end(&interval, &packed);
-    packed.truncate(end);
-    packed
+    encoder.finish()
 }
 
-/// How many of `packed`, whose last four bytes are the interval's upper end, must be kept for
-/// the rest, read as zeros, to lie in the interval.
-fn shortest_end(interval: &Interval, packed: &[u8]) -> usize {
-    let body = packed.len() - 4;
-    let keeps = |n: usize| {
-        let kept = if n == 0 { 0 } else { interval.high & !0u32 << (32 - 8 * n) };
-        kept >= interval.low
-    };
-    body + (0..=4).find(|&n| keeps(n)).unwrap_or(4)
+/// The small coder: what [`small::decode`] decodes.
+pub fn small(bytes: &[u8]) -> Vec<u8> {
+    let mut cells = new_cells();
+    let mut model = small::Model::new(&mut cells);
+    let mut encoder = Encoder::new();
+    for bit in bytes.iter().flat_map(|&byte| bits(byte)) {
+        encoder.bit(bit, model.predict());
+        model.learn(bit);
+    }
+    encoder.finish()
+}
+
+/// Memory for the small coder.
+pub fn new_cells() -> Box<small::Cells> {
+    let cells = vec![small::Cell::default(); size_of::<small::Cells>() / size_of::<small::Cell>()];
+    cells.into_boxed_slice().try_into().unwrap_or_else(|_| unreachable!("the length is right"))
+}
+
+/// The bits of a byte, highest first.
+fn bits(byte: u8) -> impl Iterator<Item = u32> {
+    (0..8).rev().map(move |shift| u32::from(byte) >> shift & 1)
+}
+
+/// Writes bits for [`crate::codec::interval::Decoder`].
+struct Encoder {
+    interval: Interval,
+    packed: Vec<u8>,
+}
+
+impl Encoder {
+    fn new() -> Encoder {
+        Encoder { interval: Interval::WHOLE, packed: Vec::new() }
+    }
+
+    /// A bit that is a one with the probability `one`, in 16 bits.
+    fn bit(&mut self, bit: u32, one: u32) {
+        self.interval.narrow(self.interval.split(one), bit);
+        let mut top = (self.interval.high >> 24) as u8;
+        while self.interval.settled() {
+            self.packed.push(top);
+            top = (self.interval.high >> 24) as u8;
+        }
+    }
+
+    /// The code, ended by the fewest bytes that lie in the interval when zeros follow.
+    fn finish(mut self) -> Vec<u8> {
+        let Interval { low, high } = self.interval;
+        let kept = |count: u32| if count == 0 { 0 } else { high & !0 << (32 - 8 * count) };
+        let count = (0..4).find(|&count| kept(count) >= low).unwrap_or(4);
+        self.packed.extend(&high.to_be_bytes()[..count as usize]);
+        self.packed
+    }
 }
 
 /// LZMA: what [`crate::codec::lzma::decode`] decodes.

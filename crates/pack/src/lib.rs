@@ -1,7 +1,7 @@
 //! luc-pack: makes a small executable of an x86-64 Linux program, and the 64 kB file of Lúč.
 //!
-//! A packed file is a launcher of a few kilobytes, a header, and the compressed program. The
-//! launcher decodes the program into memory and starts it there with the arguments and the
+//! A packed file is a launcher of a few kilobytes, most of it compressed itself ([`codec::small`]),
+//! and the compressed program. The launcher decodes the program into memory and starts it there with the arguments and the
 //! environment that it was given itself.
 //!
 //! - [`elf`] takes from the program what the system doesn't need.
@@ -43,7 +43,7 @@ impl Method {
         Method::ALL.iter().find(|(known, _)| *known == name).map(|(_, method)| *method)
     }
 
-    /// The launcher's machine code.
+    /// The machine code of the launcher's main part.
     fn launcher(self) -> &'static [u8] {
         match self {
             Method::Cm => include_bytes!(concat!(env!("OUT_DIR"), "/launcher-cm")),
@@ -52,6 +52,9 @@ impl Method {
         }
     }
 }
+
+/// The machine code of the launcher's first part.
+const OPENER: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/opener"));
 
 /// What to make.
 #[derive(Clone, Copy, Debug)]
@@ -83,7 +86,7 @@ pub fn pack_elf(file: &[u8], method: Method) -> Result<Packed, Error> {
 /// Packs a program with all choices.
 pub fn pack_elf_as(file: &[u8], options: &Options) -> Result<Packed, Error> {
     let launcher = options.method.launcher();
-    if launcher.is_empty() {
+    if OPENER.is_empty() {
         return Err(Error::NoLauncher);
     }
     let elf::Program { stripped, code } = elf::Program::new(file)?;
@@ -99,6 +102,7 @@ pub fn pack_elf_as(file: &[u8], options: &Options) -> Result<Packed, Error> {
         Method::Raw => filtered,
     };
 
+    let main = encode::small(launcher);
     let mut name = [0; NAME];
     for (to, from) in name.iter_mut().zip(options.name.bytes()) {
         *to = from;
@@ -106,6 +110,8 @@ pub fn pack_elf_as(file: &[u8], options: &Options) -> Result<Packed, Error> {
     let header = Header {
         output_crc: crc32(&stripped),
         output: stripped.len() as u32,
+        main: launcher.len() as u32,
+        main_coded: main.len() as u32,
         payload: payload.len() as u32,
         flags: if options.needs_avx2 { NEEDS_AVX2 } else { 0 },
         code_start: code.range.start as u32,
@@ -113,13 +119,14 @@ pub fn pack_elf_as(file: &[u8], options: &Options) -> Result<Packed, Error> {
         base,
         name,
     };
-    let code_length = launcher.len().next_multiple_of(4);
-    let length = ELF_HEADERS + code_length + HEADER + payload.len() + CHECKSUM;
+    let opener = OPENER.len().next_multiple_of(4);
+    let length = ELF_HEADERS + opener + HEADER + main.len() + payload.len() + CHECKSUM;
     let address = LOADED_AT as u64;
     let mut file = elf::launcher_headers(address, address + ELF_HEADERS as u64, length as u64);
-    file.extend(launcher);
-    file.resize(ELF_HEADERS + code_length, 0);
+    file.extend(OPENER);
+    file.resize(ELF_HEADERS + opener, 0);
     file.extend(header.bytes());
+    file.extend(&main);
     file.extend(&payload);
     file.extend(crc32(&file).to_le_bytes());
     Ok(Packed { file, stripped, payload: payload.len() })

@@ -1,6 +1,6 @@
 //! What the coders decode is what was encoded, whatever it is; and decoding anything ends.
 
-use luc_pack::codec::{cm, filter, lzma};
+use luc_pack::codec::{cm, filter, lzma, small};
 use luc_pack::encode;
 use proptest::prelude::*;
 
@@ -13,6 +13,12 @@ fn through_cm(bytes: &[u8]) -> Vec<u8> {
 fn through_lzma(bytes: &[u8]) -> Vec<u8> {
     let mut output = vec![0; bytes.len()];
     lzma::decode(&encode::lzma(bytes), &mut output);
+    output
+}
+
+fn through_small(bytes: &[u8]) -> Vec<u8> {
+    let mut output = vec![0; bytes.len()];
+    small::decode(&mut encode::new_cells(), &encode::small(bytes), &mut output);
     output
 }
 
@@ -35,12 +41,14 @@ proptest! {
     fn random_bytes(bytes in proptest::collection::vec(any::<u8>(), 0..3000)) {
         prop_assert_eq!(&through_cm(&bytes), &bytes);
         prop_assert_eq!(&through_lzma(&bytes), &bytes);
+        prop_assert_eq!(&through_small(&bytes), &bytes);
     }
 
     #[test]
     fn structured_bytes(bytes in structured()) {
         prop_assert_eq!(&through_cm(&bytes), &bytes);
         prop_assert_eq!(&through_lzma(&bytes), &bytes);
+        prop_assert_eq!(&through_small(&bytes), &bytes);
     }
 
     #[test]
@@ -48,6 +56,7 @@ proptest! {
         let mut output = vec![0; length];
         cm::decode(&mut encode::new_model(), &bytes, &mut output);
         lzma::decode(&bytes, &mut output);
+        small::decode(&mut encode::new_cells(), &bytes, &mut output);
         filter::filter(&mut output, 0, filter::Direction::Unpack);
     }
 }
@@ -57,6 +66,7 @@ fn the_shortest_inputs() {
     for bytes in [&b""[..], b"\0", b"a", b"\xff", b"ab", b"aa", &[0; 5], &[255; 70]] {
         assert_eq!(through_cm(bytes), bytes);
         assert_eq!(through_lzma(bytes), bytes);
+        assert_eq!(through_small(bytes), bytes);
     }
 }
 
@@ -69,5 +79,6 @@ fn machine_code() {
         filter::filter(&mut bytes, 0x1000, filter::Direction::Pack);
         assert!(through_cm(&bytes) == bytes);
         assert!(through_lzma(&bytes) == bytes);
+        assert!(through_small(&bytes) == bytes);
     }
 }

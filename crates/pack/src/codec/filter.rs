@@ -7,7 +7,6 @@
 //!
 //! Source: the call filter of Fabian Giesen's kkrunchy, and Igor Pavlov's BCJ.
 
-#[cfg(not(luc_method = "raw"))]
 use super::x86::{Part, Walker};
 
 /// Which way to filter.
@@ -20,7 +19,6 @@ pub enum Direction {
 }
 
 /// Filters `code` in place; `address` is the virtual address of its first byte.
-#[cfg(not(luc_method = "raw"))]
 pub fn filter(code: &mut [u8], address: u32, direction: Direction) {
     let mut walker = Walker::START;
     let mut at = 0;

@@ -1,9 +1,9 @@
-//! The header between the launcher's code and the payload of a packed file.
+//! The header between the opener and the rest of a packed file.
 //!
-//! Seven little-endian words and a name; the payload follows, and then, as the file's last word,
-//! the CRC-32 of everything before it, the launcher included. That is compared before anything in
-//! the header but the payload's length is believed; [`Header::output_crc`] is compared after
-//! decoding.
+//! Nine little-endian words and a name; then come the main part of the launcher, coded small, the
+//! payload, and, as the file's last word, the CRC-32 of everything before it, the opener included.
+//! That is compared before anything in the header but the two lengths is believed;
+//! [`Header::output_crc`] is compared after decoding.
 
 /// A header's words by name.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -13,6 +13,10 @@ pub struct Header {
     pub output_crc: u32,
     /// Length of the program, bytes.
     pub output: u32,
+    /// Length of the launcher's main part, bytes.
+    pub main: u32,
+    /// Length of that as coded, bytes.
+    pub main_coded: u32,
     /// Length of the payload, bytes.
     pub payload: u32,
     /// [`NEEDS_AVX2`] or 0.
@@ -31,10 +35,14 @@ pub struct Header {
 /// Room for the program's name, bytes.
 pub const NAME: usize = 12;
 
-/// Where the launcher's file is loaded; `launcher.ld` says the same.
+/// Where the packed file is loaded; the build script links the opener to lie behind the headers
+/// there.
 pub const LOADED_AT: usize = 0x40_0000;
 
-/// Length of the ELF header and the one program header in front of the launcher, filled up to
+/// Where the opener puts the launcher's main part; the build script links it for that place.
+pub const MAIN_AT: usize = 0x1000_0000;
+
+/// Length of the ELF header and the one program header in front of the opener, filled up to
 /// the alignment of its constants.
 pub const ELF_HEADERS: usize = (64 + 56usize).next_multiple_of(16);
 
@@ -53,6 +61,8 @@ impl Header {
         let words = [
             self.output_crc,
             self.output,
+            self.main,
+            self.main_coded,
             self.payload,
             self.flags,
             self.code_start,
