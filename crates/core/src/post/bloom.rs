@@ -8,9 +8,11 @@
 //! 0.22 and 0.15 (after Jimenez 2014, with fixed weights).
 
 use crate::math::lanes::{F, V3};
+use crate::parallel;
 use crate::render::Stage;
 use crate::sample::{TILE, Tile};
-use rayon::prelude::*;
+
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Lines of the first octave, about.
 const LINES: u32 = 270;
@@ -57,24 +59,27 @@ impl Glow {
         self.pad();
         let (width, height, stride) = (self.width, self.height, self.stride());
         let load = |row: &[f32], x: usize| F::new(std::array::from_fn(|i| row[x + i]));
-        self.planes.par_iter_mut().for_each(|plane| {
-            let mut along = vec![0.0; plane.len()];
-            for (out, row) in along.chunks_mut(stride).zip(plane.chunks(stride)) {
-                for x in (PAD..PAD + width).step_by(8) {
-                    let sum = (0..7).fold(F::ZERO, |sum, k| sum + load(row, x + k - 3) * F::splat(TAPS[k]));
-                    out[x..x + 8].copy_from_slice(sum.as_array());
+        parallel::run(self.planes.iter_mut().map(|plane| {
+            move || {
+                let mut along = vec![0.0; plane.len()];
+                for (out, row) in along.chunks_mut(stride).zip(plane.chunks(stride)) {
+                    for x in (PAD..PAD + width).step_by(8) {
+                        let sum =
+                            (0..7).fold(F::ZERO, |sum, k| sum + load(row, x + k - 3) * F::splat(TAPS[k]));
+                        out[x..x + 8].copy_from_slice(sum.as_array());
+                    }
+                }
+                for (y, out) in plane.chunks_mut(stride).enumerate() {
+                    for x in (PAD..PAD + width).step_by(8) {
+                        let sum = (0..7).fold(F::ZERO, |sum, k| {
+                            let y = (y + k).saturating_sub(3).min(height - 1);
+                            sum + load(&along[y * stride..], x) * F::splat(TAPS[k])
+                        });
+                        out[x..x + 8].copy_from_slice(sum.as_array());
+                    }
                 }
             }
-            for (y, out) in plane.chunks_mut(stride).enumerate() {
-                for x in (PAD..PAD + width).step_by(8) {
-                    let sum = (0..7).fold(F::ZERO, |sum, k| {
-                        let y = (y + k).saturating_sub(3).min(height - 1);
-                        sum + load(&along[y * stride..], x) * F::splat(TAPS[k])
-                    });
-                    out[x..x + 8].copy_from_slice(sum.as_array());
-                }
-            }
-        });
+        }));
         self.pad();
     }
 
@@ -131,39 +136,41 @@ fn bright(stage: &Stage, tiles: &[Tile]) -> Option<Glow> {
     let mut glow = Glow::new(w.div_ceil(side), h.div_ceil(side), side as f32);
     let stride = glow.stride();
     let [r, g, b] = &mut glow.planes;
-    let rows = r.par_chunks_mut(stride).zip(g.par_chunks_mut(stride)).zip(b.par_chunks_mut(stride));
-    let any = rows.enumerate().map(|(row, ((r, g), b))| {
-        let mut any = false;
-        for y in (row * side..(row + 1) * side).take_while(|y| *y < h) {
-            for x in (0..w).step_by(8) {
-                let tile = &tiles[y / TILE * across + x / TILE];
-                let at = (y % TILE) * TILE + x % TILE;
-                let [cr, cg, cb] = tile.rgb.each_ref().map(|p| {
-                    let v = F::new(std::array::from_fn(|i| p[at + i])) * F::splat(grade.exposure);
-                    v.fast_max(F::ZERO).fast_min(F::splat(LIMIT))
-                });
-                let most = cr.fast_max(cg).fast_max(cb);
-                let over = most - F::splat(grade.bloom_threshold);
-                let knee = F::splat(KNEE);
-                if !over.simd_gt(-knee).any() {
-                    continue;
-                }
-                any = true;
-                let soft = (over + knee).fast_max(F::ZERO).fast_min(knee + knee);
-                let share = over.fast_max(soft * soft * F::splat(0.5 / (2.0 * KNEE)));
-                let share =
-                    (share / most.fast_max(F::splat(1e-6))).as_array().map(|s| s / (side * side) as f32);
-                for (i, share) in share.into_iter().enumerate().take(w - x) {
-                    let to = PAD + ((x + i) >> step);
-                    r[to] += cr.as_array()[i] * share;
-                    g[to] += cg.as_array()[i] * share;
-                    b[to] += cb.as_array()[i] * share;
+    let rows = r.chunks_mut(stride).zip(g.chunks_mut(stride)).zip(b.chunks_mut(stride));
+    let any = AtomicBool::new(false);
+    parallel::run(rows.enumerate().map(|(row, ((r, g), b))| {
+        let any = &any;
+        move || {
+            for y in (row * side..(row + 1) * side).take_while(|y| *y < h) {
+                for x in (0..w).step_by(8) {
+                    let tile = &tiles[y / TILE * across + x / TILE];
+                    let at = (y % TILE) * TILE + x % TILE;
+                    let [cr, cg, cb] = tile.rgb.each_ref().map(|p| {
+                        let v = F::new(std::array::from_fn(|i| p[at + i])) * F::splat(grade.exposure);
+                        v.fast_max(F::ZERO).fast_min(F::splat(LIMIT))
+                    });
+                    let most = cr.fast_max(cg).fast_max(cb);
+                    let over = most - F::splat(grade.bloom_threshold);
+                    let knee = F::splat(KNEE);
+                    if !over.simd_gt(-knee).any() {
+                        continue;
+                    }
+                    any.store(true, Ordering::Relaxed);
+                    let soft = (over + knee).fast_max(F::ZERO).fast_min(knee + knee);
+                    let share = over.fast_max(soft * soft * F::splat(0.5 / (2.0 * KNEE)));
+                    let share =
+                        (share / most.fast_max(F::splat(1e-6))).as_array().map(|s| s / (side * side) as f32);
+                    for (i, share) in share.into_iter().enumerate().take(w - x) {
+                        let to = PAD + ((x + i) >> step);
+                        r[to] += cr.as_array()[i] * share;
+                        g[to] += cg.as_array()[i] * share;
+                        b[to] += cb.as_array()[i] * share;
+                    }
                 }
             }
         }
-        any
-    });
-    any.reduce(|| false, |a, b| a | b).then_some(glow)
+    }));
+    any.into_inner().then_some(glow)
 }
 
 /// The glow to add to the exposed picture, if there is any.

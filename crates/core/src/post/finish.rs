@@ -7,29 +7,30 @@ use super::bloom::{Glow, bloom};
 use crate::math::hash::{hash_x8, unit_x8};
 use crate::math::lanes::{F, LANE_INDEX, U, V3};
 use crate::math::lanes_fn::pow;
+use crate::parallel;
 use crate::render::Stage;
 use crate::sample::{Kind, TILE, Tile};
 use glam::Vec3;
-use rayon::prelude::*;
 
 /// Rows that are finished as one piece of work.
-const ROWS: usize = 8;
+const ROWS: usize = 16;
 
 /// Writes the tiles of frame `n` as 0RGB rows into `pixels`.
 pub fn finish(stage: &Stage, tiles: &[Tile], n: u64, pixels: &mut [u32]) {
     let width = stage.width as usize;
     let across = width.div_ceil(TILE);
     let glow = bloom(stage, tiles);
-    pixels.par_chunks_mut(width * ROWS).enumerate().for_each(|(strip, rows)| {
-        for (y, row) in rows.chunks_mut(width).enumerate() {
-            let y = strip * ROWS + y;
-            let tiles = &tiles[y / TILE * across..];
-            for (tile, part) in tiles.iter().zip(row.chunks_mut(TILE)).enumerate() {
-                let (tile, part, x) = (part.0, part.1, tile * TILE);
-                finish_row(stage, tile, glow.as_ref(), (x, y), n, part);
+    let glow = glow.as_ref();
+    parallel::run(pixels.chunks_mut(width * ROWS).enumerate().map(|(strip, rows)| {
+        move || {
+            for (row, y) in rows.chunks_mut(width).zip(strip * ROWS..) {
+                let tiles = &tiles[y / TILE * across..];
+                for (k, (tile, part)) in tiles.iter().zip(row.chunks_mut(TILE)).enumerate() {
+                    finish_row(stage, tile, glow, (k * TILE, y), n, part);
+                }
             }
         }
-    });
+    }));
 }
 
 /// Finishes the row `y` of the picture within one tile, from pixel `x` on.

@@ -113,6 +113,7 @@ pub fn refine(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize), tile
 }
 
 /// Traces the samples of `cells` that are still missing, in the cells' order.
+#[inline(never)]
 fn sample(stage: &Stage, scratch: &mut Scratch, cells: &[Cell], corner: (usize, usize), shapes: u64) {
     let mut missing: Vec<Position> = Vec::new();
     let before = scratch.samples.0.len() * 8;
@@ -186,6 +187,7 @@ impl Corners<'_> {
     /// quarter of it where mirrors or glass show different things at the samples.
     ///
     /// Written so that NaN refines. Without a centre sample the corners must be this close.
+    #[inline(never)]
     fn smooth(&self, stage: &Stage) -> bool {
         if !self.same_surface() {
             return false;
@@ -215,6 +217,7 @@ impl Corners<'_> {
 
 impl Surroundings {
     /// Whether a shape, or the shadow of one, may lie between the samples of a cell.
+    #[inline(never)]
     fn may_hide_something(&self, stage: &Stage, corner: (usize, usize), cell: Cell, known: &Corners) -> bool {
         let id = known.corners[0].id();
         let own = if id >= 0.0 { id as usize >> 2 } else { usize::MAX };

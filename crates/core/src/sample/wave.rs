@@ -78,6 +78,7 @@ const CULL_FROM: usize = 6;
 /// Traces one sample for each of `positions` (px, right and down from the picture's corner) and
 /// appends them to `scratch.samples`, from the start of a new block on; returns the index of the
 /// first. `candidates` must hold all shapes the first rays may hit.
+#[inline(never)]
 pub fn trace(stage: &Stage, scratch: &mut Scratch, positions: &[Position], candidates: u64) -> usize {
     let first = scratch.samples.0.len();
     scratch.counters.add(Counter::PrimaryRays, positions.len() as u32);
@@ -115,6 +116,7 @@ pub type Position = (f32, f32);
 
 /// Traces `scratch.rays`, adds what they find to their samples, and appends what goes on from
 /// there to `scratch.next`.
+#[inline(never)]
 fn step(stage: &Stage, scratch: &mut Scratch, candidates: u64, level: u32) {
     let Scratch { samples, counters, rays, next, hits, occluders: boxes, .. } = scratch;
     hits.clear();
@@ -172,6 +174,7 @@ struct Found {
 }
 
 /// Light that the rays of a packet find at their hits, and the rays that go on from there.
+#[inline(never)]
 fn shade_packet(
     stage: &Stage,
     packet: &Packet,
@@ -292,6 +295,7 @@ impl Found {
     }
 
     /// Appends the rays that go on, if what they may add is worth it.
+    #[inline(never)]
     fn spawn(&self, stage: &Stage, owners: &[u32], next: &mut RayList, counters: &mut Counters) {
         let cutoff = F::splat(stage.quality.cutoff / stage.scene.grade.exposure);
         let worth = |w: V3| w.x.fast_max(w.y).fast_max(w.z).simd_gt(cutoff).to_bitmask();

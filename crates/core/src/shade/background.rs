@@ -19,6 +19,7 @@ fn covered(x: F, half: F, w: F) -> F {
 /// [`NONE`] for the sky, `NONE - 1 - k` for disc k.
 ///
 /// `spread` is the width of a ray's footprint per unit of distance.
+#[inline(never)]
 pub fn background(sky: &Background, rays: &Rays8, spread: F) -> (V3, F) {
     let d = rays.direction;
     let mut colour = V3::splat(glam::Vec3::ZERO);
@@ -58,6 +59,7 @@ pub fn background(sky: &Background, rays: &Rays8, spread: F) -> (V3, F) {
 ///
 /// The edges are softened by the ray's footprint (its width at the rectangle is `spread` times
 /// the distance), as a rough mirror would.
+#[inline(never)]
 pub fn emitters(list: &[Emitter], rays: &Rays8, spread: F, t: F) -> (V3, F, F) {
     let mut light = V3::splat(glam::Vec3::ZERO);
     let (mut open, mut seen) = (F::ONE, F::ZERO);
