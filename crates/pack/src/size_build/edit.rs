@@ -59,6 +59,19 @@ impl Source {
         Ok(())
     }
 
+    /// Replaces every `from` in all files that have it; there must be some.
+    pub fn replace_everywhere(&mut self, from: &str, new: &str, edit: &'static str) -> Result<(), Error> {
+        let mut found = false;
+        for bytes in self.files.values_mut() {
+            let Ok(text) = std::str::from_utf8(bytes) else { continue };
+            if text.contains(from) {
+                found = true;
+                *bytes = text.replace(from, new).into_bytes();
+            }
+        }
+        if found { Ok(()) } else { Err(self.unknown(edit)) }
+    }
+
     /// Keeps those lines of a file for which `keep` says so.
     pub fn keep_lines(
         &mut self,

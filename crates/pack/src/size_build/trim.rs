@@ -127,6 +127,28 @@ pub struct DynamicLibrary;
 
 "#;
 
+/// wide: every operation in line, as the single instruction that it is.
+///
+/// Compiling for size, the compiler would else call a function for a comparison of eight lanes,
+/// and write eight equal numbers in a loop instead of broadcasting one.
+pub fn wide(source: &mut Source) -> Result<(), Error> {
+    let edit = "put its operations in line";
+    source.replace_everywhere("#[inline]", "#[inline(always)]", edit)?;
+    source.replace_everywhere(
+        "unsafe { core::mem::transmute::<[$T; $N], $Simd>([elem; $N]) }",
+        WIDE_SPLAT,
+        edit,
+    )
+}
+
+/// The compiler sees through an array that is written out.
+const WIDE_SPLAT: &str = "if $N == 8 {
+          let eight = [elem, elem, elem, elem, elem, elem, elem, elem];
+          unsafe { core::mem::transmute_copy::<[$T; 8], $Simd>(&eight) }
+        } else {
+          unsafe { core::mem::transmute::<[$T; $N], $Simd>([elem; $N]) }
+        }";
+
 /// rayon-core: as many threads as the system lets this process run on, and no more questions.
 ///
 /// The published crate also asks environment variables, and the standard library reads the limits

@@ -35,11 +35,13 @@ pub fn prepare(root: &Path, output: &Path, toolchain: &Toolchain) -> Result<Path
     trim::x11_dl(&mut x11_dl, &trim::called_functions(&minifb)?)?;
     let mut rayon_core = read("rayon-core")?;
     trim::rayon_core(&mut rayon_core)?;
+    let mut wide = read("wide")?;
+    trim::wide(&mut wide)?;
 
     let mut replaced = Vec::new();
     let mut manifest = read_text(&root.join("Cargo.toml"))?;
     manifest.push_str("\n[patch.crates-io]\n");
-    for (name, source) in [("x11-dl", x11_dl), ("rayon-core", rayon_core)] {
+    for (name, source) in [("x11-dl", x11_dl), ("rayon-core", rayon_core), ("wide", wide)] {
         source.write(&output.join("deps").join(name))?;
         manifest.push_str(&format!("{name} = {{ path = \"../deps/{name}\" }}\n"));
         replaced.push(name);
