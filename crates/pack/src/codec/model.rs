@@ -13,7 +13,7 @@
 //! Source: Matt Mahoney's paq8 and lpaq1 for the architecture; Fabian Giesen's kkrunchy and Rune
 //! Stubbe's and Aske Christensen's Crinkler for contexts that follow instructions.
 
-use super::logistic::{LIMIT, Stretch, Vector, squash};
+use super::logistic::{Stretch, Vector, squash};
 use super::x86::{Part, Walker, mix};
 
 /// Number of contexts.
@@ -321,5 +321,5 @@ fn next_history(history: u8, bit: u32) -> u8 {
     zeros << 5 | ones << 2 | history << 1 & 2 | bit as u8
 }
 
-// Not used by the arithmetic, but a wrong order of magnitude here would be a wrong model.
-const _: () = assert!(LIMIT > 8.0 && Part::Opcode as u8 == 0 && CONTEXTS.is_multiple_of(2));
+// A model of zeros starts with an instruction's first byte, and opinions come in fours.
+const _: () = assert!(Part::Opcode as u8 == 0 && CONTEXTS.is_multiple_of(2));
