@@ -59,6 +59,7 @@ impl Source {
         Ok(())
     }
 
+<<<<<<< HEAD
     /// Replaces every `from` in all files that have it; there must be some.
     pub fn replace_everywhere(&mut self, from: &str, new: &str, edit: &'static str) -> Result<(), Error> {
         let mut found = false;
@@ -70,6 +71,21 @@ impl Source {
             }
         }
         if found { Ok(()) } else { Err(self.unknown(edit)) }
+=======
+    /// Replaces `old`, which must occur once.
+    pub fn replace_text(
+        &mut self,
+        file: &str,
+        old: &str,
+        new: &str,
+        edit: &'static str,
+    ) -> Result<(), Error> {
+        let replaced = self.text(file).and_then(|text| split_once(text, old));
+        let replaced = replaced.map(|(before, after)| format!("{before}{new}{after}"));
+        let replaced = replaced.ok_or_else(|| self.unknown(edit))?;
+        self.files.insert(PathBuf::from(file), replaced.into_bytes());
+        Ok(())
+>>>>>>> pack
     }
 
     /// Keeps those lines of a file for which `keep` says so.
@@ -131,6 +147,14 @@ mod tests {
         let mut source = source("one two three");
         source.replace("a.rs", "two", " three", "2", "count").unwrap();
         assert_eq!(source.text("a.rs"), Some("one 2 three"));
+    }
+
+    #[test]
+    fn replaces_a_text_that_occurs_once() {
+        let mut source = source("one two two three");
+        source.replace_text("a.rs", "one ", "", "count").unwrap();
+        assert_eq!(source.text("a.rs"), Some("two two three"));
+        assert!(source.replace_text("a.rs", "two", "2", "count").is_err());
     }
 
     #[test]
