@@ -59,7 +59,6 @@ impl Source {
         Ok(())
     }
 
-<<<<<<< HEAD
     /// Replaces every `from` in all files that have it; there must be some.
     pub fn replace_everywhere(&mut self, from: &str, new: &str, edit: &'static str) -> Result<(), Error> {
         let mut found = false;
@@ -71,7 +70,8 @@ impl Source {
             }
         }
         if found { Ok(()) } else { Err(self.unknown(edit)) }
-=======
+    }
+
     /// Replaces `old`, which must occur once.
     pub fn replace_text(
         &mut self,
@@ -85,7 +85,6 @@ impl Source {
         let replaced = replaced.ok_or_else(|| self.unknown(edit))?;
         self.files.insert(PathBuf::from(file), replaced.into_bytes());
         Ok(())
->>>>>>> pack
     }
 
     /// Keeps those lines of a file for which `keep` says so.

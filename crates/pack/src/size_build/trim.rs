@@ -127,30 +127,13 @@ pub struct DynamicLibrary;
 
 "#;
 
-<<<<<<< HEAD
 /// wide: every operation in line, as the single instruction that it is.
 ///
-/// Compiling for size, the compiler would else call a function for a comparison of eight lanes,
-/// and write eight equal numbers in a loop instead of broadcasting one.
+/// Compiling for size, the compiler would else call a function for a comparison of eight lanes.
 pub fn wide(source: &mut Source) -> Result<(), Error> {
-    let edit = "put its operations in line";
-    source.replace_everywhere("#[inline]", "#[inline(always)]", edit)?;
-    source.replace_everywhere(
-        "unsafe { core::mem::transmute::<[$T; $N], $Simd>([elem; $N]) }",
-        WIDE_SPLAT,
-        edit,
-    )
+    source.replace_everywhere("#[inline]", "#[inline(always)]", "put its operations in line")
 }
 
-/// The compiler sees through an array that is written out.
-const WIDE_SPLAT: &str = "if $N == 8 {
-          let eight = [elem, elem, elem, elem, elem, elem, elem, elem];
-          unsafe { core::mem::transmute_copy::<[$T; 8], $Simd>(&eight) }
-        } else {
-          unsafe { core::mem::transmute::<[$T; $N], $Simd>([elem; $N]) }
-        }";
-
-=======
 /// minifb: messages about what a program can only do wrong while it is written, or that the player
 /// replaces by its own, without the formatting that comes along with them.
 pub fn minifb(source: &mut Source) -> Result<(), Error> {
@@ -182,7 +165,6 @@ pub fn minifb(source: &mut Source) -> Result<(), Error> {
     source.replace("src/lib.rs", start, end, "        let err = String::new();\n", edit)
 }
 
->>>>>>> pack
 /// rayon-core: as many threads as the system lets this process run on, and no more questions.
 ///
 /// The published crate also asks environment variables, and the standard library reads the limits
