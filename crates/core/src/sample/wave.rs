@@ -265,8 +265,10 @@ fn shade_packet(
     found.refracted_weight = entering * passed * s.colour(Channel::Tint);
     if level == stage.quality.depth {
         // Where the chain is cut, the mean light in place of what the rays would find.
-        found.light += found.mirrored_weight * shade::ambient(stage, split.mirrored);
-        found.light += found.refracted_weight * shade::ambient(stage, split.refracted);
+        let mirrored = found.mirrored_weight * shade::ambient(stage, split.mirrored);
+        let refracted = found.refracted_weight * shade::ambient(stage, split.refracted);
+        // Lanes without such a ray have no direction either.
+        found.light += (mirrored & solid) + (refracted & (solid & !split.total));
     }
     found
 }
