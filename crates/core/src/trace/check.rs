@@ -13,7 +13,7 @@
 
 use super::{Rays8, Span};
 use crate::math::hash::{hash2, unit};
-use crate::math::lanes::{V3, splat};
+use crate::math::lanes::V3;
 use glam::{DVec3, Vec3};
 
 /// Half an ulp of 1.
