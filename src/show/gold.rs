@@ -1,13 +1,16 @@
 //! Gold: three gold spheres that flow into one another, between two leaning glass cylinders, on a
 //! navy square of two triangles that floats in azure. The last 4 s show how it was sampled.
 
-use super::paint::{degrees, glass, metal, orbit, polished, seconds, smooth, swing, v};
+use super::paint::{degrees, glass, key, metal, orbit, polished, seconds, swing, v};
 use glam::{Mat3, Vec3};
 use luc_core::math::scalar::sin_cos;
 use luc_core::scene::*;
 
-/// Length of the part, seconds.
-const LENGTH: f32 = 32.0;
+/// Bearing of the camera, degrees over seconds.
+const BEARING: [Key; 2] = [key(0.0, 36.0, Ease::Smooth), key(32.0, -34.0, Ease::Step)];
+
+/// Share of the picture that shows how it was sampled: a wipe of one beat, 4 s before the end.
+const OVERLAY: [Key; 2] = [key(28.0, 0.0, Ease::Linear), key(28.5, 1.0, Ease::Step)];
 
 /// A bar that turns about its middle, around a level axis across it.
 fn bar(a: Vec3, b: Vec3, turn: f32, material: usize) -> Cylinder {
@@ -24,7 +27,7 @@ pub fn scene(frame: u64) -> Scene {
     let t = seconds(frame);
     let breathe = |period, phase| 0.25 * swing(t, period, phase);
     let gold = |x, y, z, radius| Sphere { centre: v(x, y, z), radius, material: 0, blend: 0.8 };
-    let turn = (36.0 - 70.0 * smooth(t / LENGTH)) / 360.0;
+    let turn = track(&BEARING, t) / 360.0;
     let target = v(0.35, 1.18, 0.0);
     let position = target + orbit(turn, 9.97, 1.52 + 0.5 * swing(t, 19.0, 0.0));
     let corner = |k: f32| orbit((24.0 + 90.0 * k) / 360.0, 3.3, 0.0);
@@ -88,7 +91,7 @@ pub fn scene(frame: u64) -> Scene {
             grain: 0.007,
             ..Grade::default()
         },
-        overlay: smooth((t - (LENGTH - 4.0)) / 0.5),
+        overlay: track(&OVERLAY, t),
         ..Scene::default()
     }
 }

@@ -4,23 +4,34 @@
 //! by itself; two glass balls circle at different heights in opposite directions, one with an
 //! ember inside. Everything stands on a dark mirror.
 
-use super::paint::{degrees, glass, metal, orbit, polished, seconds, smooth, swing, v};
+use super::paint::{degrees, glass, key, metal, orbit, polished, seconds, swing, v};
 use glam::Vec3;
 use luc_core::scene::*;
 
 /// Seconds between two lifts: four bars.
 const CYCLE: f32 = 8.0;
 
-/// How high the ball stands over its rest, and how high the cone does, units.
+/// How far the cone stands over its rest, units over seconds of the cycle: up on the kick, then it
+/// sinks by itself for 3.5 s.
+const CONE: [Key; 3] = [key(0.0, 0.0, Ease::Smooth), key(0.25, 0.9, Ease::Smooth), key(3.75, 0.0, Ease::Step)];
+
+/// The same for the ball, which carries the cone up and falls back freely.
+const BALL: [Key; 4] = [
+    key(0.0, 0.0, Ease::Smooth),
+    key(0.25, 0.9, Ease::Linear),
+    key(0.5, 0.85, Ease::Ramp),
+    key(0.95, 0.0, Ease::Step),
+];
+
+/// Distance of the camera from its target, units over seconds, and how far the target has risen.
+const DISTANCE: [Key; 2] = [key(0.0, 15.4, Ease::Smooth), key(30.0, 13.1, Ease::Step)];
+const RISE: [Key; 2] = [key(0.0, 2.4, Ease::Smooth), key(30.0, 2.7, Ease::Step)];
+
+/// How high the ball and the cone stand over their rest, units.
 fn lift(t: f32) -> (f32, f32) {
-    const HEIGHT: f32 = 0.9;
     let t = t % CYCLE;
-    // Up in a quarter of a second, easing out; the ball falls freely, the cone sinks 3.5 s.
-    let up = 1.0 - (1.0 - (t / 0.25).min(1.0)) * (1.0 - (t / 0.25).min(1.0));
-    let fall = ((t - 0.5) / 0.45).max(0.0);
-    let ball = (up - fall * fall).max(0.0);
-    let cone = if t < 0.25 { up } else { 1.0 - smooth((t - 0.25) / 3.5) };
-    (ball.min(cone) * HEIGHT, cone * HEIGHT)
+    let cone = track(&CONE, t);
+    (track(&BALL, t).min(cone), cone)
 }
 
 /// The scene at a local frame.
@@ -31,10 +42,8 @@ pub fn scene(frame: u64) -> Scene {
     let ember = orbit(0.298 + t / 11.0, 2.9, 3.75 + 0.4 * swing(t, 7.0, 0.0));
     let water = orbit(0.845 - t / 13.0, 2.84, 1.35 + 0.4 * swing(t, 9.0, 0.0));
     let turn = degrees(-15.0 + 12.0 * swing(t, 17.0, 0.0) + 6.0 * swing(t, 23.0, 0.25));
-    let near = smooth(t / 30.0);
-    let distance = 15.4 - 2.3 * near;
-    let target = v(1.5, 2.4 + 0.3 * near, 0.0);
-    let away = orbit(turn / std::f32::consts::TAU, distance, -0.05);
+    let target = v(1.5, track(&RISE, t), 0.0);
+    let away = orbit(turn / std::f32::consts::TAU, track(&DISTANCE, t), -0.05);
 
     let steel = Material { specular: v(0.35, 0.47, 0.66), exponent: 18.0, ..metal(v(0.2, 0.27, 0.38), 0.27) };
     Scene {

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use luc_core::math::scalar::{sin, sin_cos};
-use luc_core::scene::Material;
+use luc_core::scene::{Ease, Key, Material};
 use std::f32::consts::{PI, TAU};
 
 use super::FPS;
@@ -33,10 +33,9 @@ pub const fn degrees(x: f32) -> f32 {
     x * (PI / 180.0)
 }
 
-/// x² (3 - 2x) of x kept in 0..1.
-pub fn smooth(x: f32) -> f32 {
-    let x = x.clamp(0.0, 1.0);
-    x * x * (3.0 - 2.0 * x)
+/// A key of a track.
+pub const fn key(time: f32, value: f32, ease: Ease) -> Key {
+    Key { time, value, ease }
 }
 
 /// A bare metal: no diffuse part, mirrors in its own colour.

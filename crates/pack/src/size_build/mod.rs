@@ -29,14 +29,8 @@ const RUSTFLAGS: &[&str] = &[
     "-Zlocation-detail=none",
     "-Zfmt-debug=none",
     "-Cforce-unwind-tables=no",
-    // At a fixed address: no relocations.
+    // At a fixed address: no relocations. What the linker needs besides is in build.rs.
     "-Crelocation-model=static",
-    "-Clink-arg=-no-pie",
-    // The entry is the program's own.
-    "-Clink-arg=-nostartfiles",
-    // Nothing in the file that the system doesn't need, and one segment for code and constants.
-    "-Clink-arg=-Wl,--build-id=none,--no-eh-frame-hdr,--hash-style=gnu",
-    "-Clink-arg=-Wl,-z,norelro,-z,noseparate-code",
     // The C library's maths before the standard library's copy of it, which is larger.
     "-Zpre-link-arg=-Wl,--no-as-needed",
     "-Zpre-link-arg=-lm",
