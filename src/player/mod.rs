@@ -7,7 +7,6 @@
 
 mod args;
 mod clock;
-pub mod cpu;
 mod file;
 mod fit;
 mod live;

@@ -24,7 +24,7 @@ pub fn scene(frame: u64) -> Scene {
     let t = seconds(frame);
     let breathe = |period, phase| 0.25 * swing(t, period, phase);
     let gold = |x, y, z, radius| Sphere { centre: v(x, y, z), radius, material: 0, blend: 0.8 };
-    let turn = 24.5 / 360.0 + degrees(70.0) / std::f32::consts::TAU * (smooth(t / LENGTH) - 0.25);
+    let turn = (36.0 - 70.0 * smooth(t / LENGTH)) / 360.0;
     let target = v(0.35, 1.18, 0.0);
     let position = target + orbit(turn, 9.97, 1.52 + 0.5 * swing(t, 19.0, 0.0));
     let corner = |k: f32| orbit((24.0 + 90.0 * k) / 360.0, 3.3, 0.0);
@@ -50,9 +50,9 @@ pub fn scene(frame: u64) -> Scene {
             discs: vec![],
         },
         spheres: vec![
-            gold(-0.62, 0.86 + breathe(5.0, 0.0), 0.05, 0.86),
-            gold(0.62, 0.66 + breathe(7.0, 0.3), 0.3, 0.66),
-            gold(0.22, 1.42 + breathe(8.3, 0.6), -0.02, 0.62),
+            gold(-0.55, 0.92 + 0.6 * breathe(5.0, 0.0), 0.05, 0.9),
+            gold(0.58, 0.74 + 0.6 * breathe(7.0, 0.3), 0.28, 0.72),
+            gold(0.2, 1.48 + 0.6 * breathe(8.3, 0.6), -0.05, 0.62),
         ],
         cylinders: vec![
             bar(v(-2.15, 0.3, 0.1), v(-1.75, 2.95, -0.65), t / 9.0, 1),
@@ -80,6 +80,7 @@ pub fn scene(frame: u64) -> Scene {
         shading: Shading::CookTorrance,
         ambient: [v(0.05, 0.09, 0.2), v(0.2, 0.3, 0.5)],
         grade: Grade {
+            bloom: 0.3,
             lift: v(0.0, 0.006, 0.03),
             gamma: v(0.9, 0.89, 0.95),
             gain: v(1.0, 0.985, 0.955),

@@ -31,8 +31,9 @@ pub fn scene(frame: u64) -> Scene {
     let ember = orbit(0.298 + t / 11.0, 2.9, 3.75 + 0.4 * swing(t, 7.0, 0.0));
     let water = orbit(0.845 - t / 13.0, 2.84, 1.35 + 0.4 * swing(t, 9.0, 0.0));
     let turn = degrees(-15.0 + 12.0 * swing(t, 17.0, 0.0) + 6.0 * swing(t, 23.0, 0.25));
-    let distance = 15.4 - 2.9 * smooth(t / 30.0);
-    let target = v(1.5, 2.4, 0.0);
+    let near = smooth(t / 30.0);
+    let distance = 15.4 - 2.3 * near;
+    let target = v(1.5, 2.4 + 0.3 * near, 0.0);
     let away = orbit(turn / std::f32::consts::TAU, distance, -0.05);
 
     let steel = Material { specular: v(0.35, 0.47, 0.66), exponent: 18.0, ..metal(v(0.2, 0.27, 0.38), 0.27) };
@@ -74,7 +75,10 @@ pub fn scene(frame: u64) -> Scene {
         materials: vec![
             steel,
             metal(v(0.93, 0.95, 0.98), 0.02),
-            glass(v(1.0, 0.74, 0.42), v(1.0, 0.3, 0.04), 1.28),
+            Material {
+                emission: v(0.03, 0.009, 0.001),
+                ..glass(v(1.0, 0.74, 0.42), v(1.0, 0.3, 0.04), 1.28)
+            },
             Material { diffuse: 0.0, emission: v(1.0, 0.46, 0.12) * 9.0, ..Material::default() },
             glass(v(0.7, 0.94, 1.0), v(0.12, 0.62, 1.0), 1.5),
             Material { grain: 0.18, grain_scale: 0.9, ..polished(v(0.13, 0.17, 0.24), 0.05, 1.75) },
@@ -94,13 +98,23 @@ pub fn scene(frame: u64) -> Scene {
                     outer: 0.743,
                 },
             },
+            // From the floor up along the upper cone, which else only mirrors the dark below.
+            Light {
+                position: v(-1.3, 0.3, 3.6),
+                colour: v(0.5, 0.72, 1.0) * 70.0,
+                kind: LightKind::Spot {
+                    direction: (v(0.0, 4.4, 0.0) - v(-1.3, 0.3, 3.6)).normalize(),
+                    inner: 0.95,
+                    outer: 0.86,
+                },
+            },
         ],
         emitters: vec![
             Emitter::facing(v(-5.2, 4.6, 6.0), v(0.0, 2.6, 0.0), 0.9, 10.0, v(0.62, 0.8, 1.0) * 21.93),
             Emitter::facing(v(7.5, 7.0, -5.0), v(0.0, 2.5, 0.0), 1.0, 5.0, v(0.7, 0.85, 1.0) * 26.74),
         ],
         shading: Shading::Phong,
-        ambient: [v(0.01, 0.015, 0.03), v(0.008, 0.02, 0.055)],
+        ambient: [v(0.08, 0.13, 0.23), v(0.01, 0.026, 0.07)],
         fog: Some(Fog {
             density: 0.012,
             colour: v(0.03, 0.075, 0.18),
@@ -108,6 +122,8 @@ pub fn scene(frame: u64) -> Scene {
             hi: v(80.0, 5.0, -7.0),
         }),
         grade: Grade {
+            bloom_threshold: 1.1,
+            bloom: 0.4,
             lift: v(0.0, 0.006, 0.02),
             gamma: v(0.92, 0.92, 0.97),
             vignette: 0.18,

@@ -8,7 +8,8 @@
 //! How a frame flows, in the order of the modules: [`scene`] → [`render`] prepares a stage →
 //! [`sample`] decides where to trace → [`trace`] finds what rays hit, with [`cull`] leaving out what
 //! can't matter → [`shade`] lights it → [`post`] makes pixels, [`output`] files. [`math`] has
-//! everything that would differ between machines, [`counters`] what a frame did.
+//! everything that would differ between machines, [`parallel`] spreads work over threads,
+//! [`counters`] say what a frame did.
 //!
 //! ```
 //! use luc_core::{quality::Quality, render::Renderer, scene::*};
@@ -32,6 +33,7 @@ pub mod counters;
 pub mod cull;
 pub mod math;
 pub mod output;
+pub mod parallel;
 pub mod post;
 pub mod quality;
 pub mod render;

@@ -13,6 +13,7 @@ use glam::{Vec2, Vec3};
 
 /// Whether shape `index` may cover part of the cell around `centre` with half sides `half` (on
 /// the plane one unit ahead), whose corners, in reading order, are at `depths`.
+#[inline(never)]
 pub fn may_cover(stage: &Stage, index: usize, centre: Vec2, half: Vec2, depths: &[f32; 4]) -> bool {
     let deepest = depths.iter().fold(0.0_f32, |m, &d| m.max(d));
     match stage.scene.shape(index) {

@@ -125,6 +125,7 @@ impl Dop {
     }
 
     /// Bounds the convex hull of points (view coordinates) along the axes given.
+    #[inline(never)]
     fn hull(mut dop: Dop, points: impl Iterator<Item = Vec3>) -> Dop {
         for p in points {
             if p.z < NEAR {
@@ -140,6 +141,7 @@ impl Dop {
     }
 
     /// Bound of the hull of two discs across `axis` (world) of radii `r` around `a` and `b`.
+    #[inline(never)]
     fn discs(view: &View, axis: Vec3, (a, ra): (Vec3, f32), (b, rb): (Vec3, f32)) -> Dop {
         let (u, v) = axis.any_orthonormal_pair();
         // A regular polygon of sixteen corners around a circle: 1 / cos(pi/16).
@@ -230,6 +232,7 @@ impl Dop {
     ///
     /// Each axis gives two planes through the eye, a·p = lo z and a·p = hi z. The hull is apart if
     /// all points are farther than `slack` on the outer side of one of them, or behind the eye.
+    #[inline(never)]
     pub fn meets_hull(&self, points: &[Vec3], slack: f32) -> bool {
         if self.unbounded || self.near == f32::INFINITY {
             return self.unbounded;

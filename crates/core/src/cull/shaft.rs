@@ -109,6 +109,7 @@ impl Shaft {
 ///
 /// `own` is the shape that all the points lie on, if it is one: a plane, triangle or ball doesn't
 /// shadow the side of itself that faces the lamp, and points that face away are not asked about.
+#[inline(never)]
 pub fn occluders(scene: &Scene, shafts: &[Shaft], among: u64, own: Option<usize>, region: &Region) -> u64 {
     let ball = region.ball();
     let mut mask = 0;

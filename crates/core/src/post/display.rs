@@ -48,12 +48,14 @@ impl Display {
     }
 
     /// [`Display::map`] for eight colours.
+    #[inline(never)]
     pub fn map8(&self, linear: V3) -> V3 {
         let [r, g, b] = &self.curves;
         V3 { x: lookup(r, linear.x), y: lookup(g, linear.y), z: lookup(b, linear.z) }
     }
 }
 
+#[inline(never)]
 fn lookup(curve: &[f32], x: F) -> F {
     // fast_max takes its second operand if the first is NaN.
     let x = x.fast_max(F::splat(f32::from_bits(FIRST))).fast_min(F::splat(63.999_99));

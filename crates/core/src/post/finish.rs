@@ -1,37 +1,47 @@
-//! The last pass: display curve, vignette, grain, sampling overlay, 0RGB.
+//! The last pass: bloom, display curve, vignette, grain, sampling overlay, 0RGB.
 //!
 //! Vignette: 1 - V r^2.4 with r² = (x² + y²) / 2, x and y from -1 to 1. Grain: a hash of pixel and
 //! frame, which also hides banding. Pixels are quantised by floor(255 v + 1/2).
 
+use super::bloom::{Glow, bloom};
 use crate::math::hash::{hash_x8, unit_x8};
 use crate::math::lanes::{F, LANE_INDEX, U, V3};
 use crate::math::lanes_fn::pow;
+use crate::parallel;
 use crate::render::Stage;
 use crate::sample::{Kind, TILE, Tile};
 use glam::Vec3;
-use rayon::prelude::*;
 
 /// Rows that are finished as one piece of work.
-const ROWS: usize = 8;
+const ROWS: usize = 16;
 
 /// Writes the tiles of frame `n` as 0RGB rows into `pixels`.
 pub fn finish(stage: &Stage, tiles: &[Tile], n: u64, pixels: &mut [u32]) {
     let width = stage.width as usize;
     let across = width.div_ceil(TILE);
-    pixels.par_chunks_mut(width * ROWS).enumerate().for_each(|(strip, rows)| {
-        for (y, row) in rows.chunks_mut(width).enumerate() {
-            let y = strip * ROWS + y;
-            let tiles = &tiles[y / TILE * across..];
-            for (tile, part) in tiles.iter().zip(row.chunks_mut(TILE)).enumerate() {
-                let (tile, part, x) = (part.0, part.1, tile * TILE);
-                finish_row(stage, tile, (x, y), n, part);
+    let glow = bloom(stage, tiles);
+    let glow = glow.as_ref();
+    parallel::run(pixels.chunks_mut(width * ROWS).enumerate().map(|(strip, rows)| {
+        move || {
+            for (row, y) in rows.chunks_mut(width).zip(strip * ROWS..) {
+                let tiles = &tiles[y / TILE * across..];
+                for (k, (tile, part)) in tiles.iter().zip(row.chunks_mut(TILE)).enumerate() {
+                    finish_row(stage, tile, glow, (k * TILE, y), n, part);
+                }
             }
         }
-    });
+    }));
 }
 
 /// Finishes the row `y` of the picture within one tile, from pixel `x` on.
-fn finish_row(stage: &Stage, tile: &Tile, (x, y): (usize, usize), n: u64, row: &mut [u32]) {
+fn finish_row(
+    stage: &Stage,
+    tile: &Tile,
+    glow: Option<&Glow>,
+    (x, y): (usize, usize),
+    n: u64,
+    row: &mut [u32],
+) {
     let grade = &stage.scene.grade;
     let (w, h) = (stage.width as f32, stage.height as f32);
     let fy = ((y as f32 + 0.5) * 2.0 - h) / h;
@@ -40,7 +50,11 @@ fn finish_row(stage: &Stage, tile: &Tile, (x, y): (usize, usize), n: u64, row: &
         let at = (y % TILE) * TILE + base * 8;
         let lanes = |plane: &[f32]| F::new(plane[at..at + 8].try_into().unwrap_or_default());
         let [r, g, b] = &tile.rgb;
-        let mut colour = stage.display.map8(V3 { x: lanes(r), y: lanes(g), z: lanes(b) });
+        let mut linear = V3 { x: lanes(r), y: lanes(g), z: lanes(b) };
+        if let Some(glow) = glow {
+            linear += glow.at(x + base * 8, y) * F::splat(1.0 / grade.exposure);
+        }
+        let mut colour = stage.display.map8(linear);
 
         if x + base * 8 < wipe {
             for lane in 0..8 {

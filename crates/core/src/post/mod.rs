@@ -1,7 +1,9 @@
 //! From linear light to the pixels of the screen.
 
+mod bloom;
 mod display;
 mod finish;
 
+pub use bloom::{Glow, bloom};
 pub use display::Display;
 pub use finish::finish;

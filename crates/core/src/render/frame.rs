@@ -2,16 +2,32 @@
 
 use super::Stage;
 use crate::counters::Counters;
-use crate::post;
 use crate::quality::Quality;
 use crate::sample::{Borders, Scratch, TILE, Tile, refine, smooth_edges};
 use crate::scene::Scene;
-use rayon::prelude::*;
+use crate::{parallel, post};
+use std::sync::{Mutex, PoisonError};
+
+/// Buffers of the threads at work, handed out and taken back.
+#[derive(Default)]
+struct Pool(Mutex<Vec<Scratch>>);
+
+impl Pool {
+    /// Lends a buffer with its counters at 0.
+    fn with(&self, work: impl FnOnce(&mut Scratch)) {
+        let lock = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut scratch = lock().pop().unwrap_or_default();
+        scratch.counters = Counters::default();
+        work(&mut scratch);
+        lock().push(scratch);
+    }
+}
 
 /// Buffers that live from frame to frame.
 #[derive(Default)]
 pub struct Renderer {
     tiles: Vec<Tile>,
+    scratch: Pool,
     /// What the last frame did; all 0 without the feature `counters`.
     pub counters: Counters,
 }
@@ -19,6 +35,7 @@ pub struct Renderer {
 impl Renderer {
     /// Renders frame `n` of a scene as 0RGB rows, top to bottom, into `pixels`, which must hold
     /// `width * height` of them. `n` only seeds the grain.
+    #[inline(never)]
     pub fn frame(
         &mut self,
         scene: &Scene,
@@ -33,32 +50,31 @@ impl Renderer {
         self.tiles.resize_with(across * down, Tile::default);
         let corner = |i: usize| (i % across * TILE, i / across * TILE);
 
-        let borders: Vec<(Borders, Counters)> = self
-            .tiles
-            .par_iter_mut()
-            .enumerate()
-            .map_init(Scratch::default, |scratch, (i, tile)| {
-                scratch.counters = Counters::default();
-                (refine(&stage, scratch, corner(i), tile), scratch.counters)
-            })
-            .collect();
+        let pool = &self.scratch;
+        let mut found = vec![(Borders::default(), Counters::default()); self.tiles.len()];
+        let tiles = self.tiles.iter_mut().zip(&mut found).enumerate();
+        parallel::run(tiles.map(|(i, (tile, found))| {
+            let stage = &stage;
+            move || pool.with(|scratch| *found = (refine(stage, scratch, corner(i), tile), scratch.counters))
+        }));
+
         let border = |x: usize, y: usize| {
-            if x > 0 && y > 0 { borders[(y - 1) * across + x - 1].0 } else { Borders::default() }
+            if x > 0 && y > 0 { found[(y - 1) * across + x - 1].0 } else { Borders::default() }
         };
-        let more: Vec<Counters> = self
-            .tiles
-            .par_iter_mut()
-            .enumerate()
-            .map_init(Scratch::default, |scratch, (i, tile)| {
-                scratch.counters = Counters::default();
-                let (x, y) = (i % across, i / across);
-                let near = [border(x, y + 1), border(x + 1, y), border(x, y)];
-                smooth_edges(&stage, scratch, corner(i), tile, near);
-                scratch.counters
-            })
-            .collect();
+        let mut more = vec![Counters::default(); self.tiles.len()];
+        let tiles = self.tiles.iter_mut().zip(&mut more).enumerate();
+        parallel::run(tiles.map(|(i, (tile, counters))| {
+            let (x, y, stage) = (i % across, i / across, &stage);
+            let near = [border(x, y + 1), border(x + 1, y), border(x, y)];
+            move || {
+                pool.with(|scratch| {
+                    smooth_edges(stage, scratch, corner(i), tile, near);
+                    *counters = scratch.counters;
+                });
+            }
+        }));
         self.counters = Counters::default();
-        for counters in borders.iter().map(|b| &b.1).chain(&more) {
+        for counters in found.iter().map(|f| &f.1).chain(&more) {
             self.counters.merge(counters);
         }
         post::finish(&stage, &self.tiles, n, pixels);

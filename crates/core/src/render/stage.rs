@@ -43,6 +43,7 @@ const MAX_TRANSPARENT: usize = 23;
 impl<'a> Stage<'a> {
     /// Prepares a frame of `width` by `height` px. A transparent shape beyond the 23rd casts no
     /// shadow; a lamp beyond the eighth casts none either.
+    #[inline(never)]
     pub fn new(scene: &'a Scene, quality: &Quality, width: u32, height: u32) -> Self {
         let view = View { origin: scene.camera.position, world_from_view: scene.camera.world_from_camera() };
         let mut bits = Vec::new();
@@ -92,6 +93,7 @@ impl<'a> Stage<'a> {
     }
 
     /// [`Stage::direction`] for eight positions.
+    #[inline(never)]
     pub fn directions(&self, x: F, y: F) -> V3 {
         let [right, up, forward] = self.view.world_from_view.to_cols_array_2d().map(|c| V3::splat(c.into()));
         let pixel = F::splat(self.pixel);
@@ -107,6 +109,7 @@ impl<'a> Stage<'a> {
 
     /// Mask of the shapes that may show in the square of `side` px at `corner`, see
     /// [`crate::trace::nearest`].
+    #[inline(never)]
     pub fn candidates(&self, corner: (usize, usize), side: usize) -> u64 {
         if !self.quality.cull {
             return u64::MAX;

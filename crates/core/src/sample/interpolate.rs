@@ -45,6 +45,7 @@ impl Patch {
 }
 
 /// Fills all pixels of a cell from its samples.
+#[inline(never)]
 pub(super) fn fill(
     stage: &Stage,
     corner: (usize, usize),
@@ -110,6 +111,7 @@ pub(super) fn fill(
 }
 
 /// Rays through pixels, and where they meet the shape of `first` (0 where they don't).
+#[inline(never)]
 fn meet(stage: &Stage, first: Sample, px: F, py: F) -> (Rays8, F) {
     let rays = Rays8 { origin: V3::splat(stage.scene.camera.position), direction: stage.directions(px, py) };
     if first.id() < 0.0 {
@@ -129,6 +131,7 @@ fn albedo(stage: &Stage, first: Sample, px: F, py: F, counters: &mut Counters) -
 
 /// Light from the known shape, or background, at pixels but for mirrors and glass: the visibility
 /// of the lamps is that of the sample `first`.
+#[inline(never)]
 fn known_surface(stage: &Stage, first: Sample, px: F, py: F, counters: &mut Counters) -> V3 {
     counters.add(Counter::KnownSurfaces, 8);
     let (rays, t) = meet(stage, first, px, py);

@@ -113,6 +113,7 @@ pub fn refine(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize), tile
 }
 
 /// Traces the samples of `cells` that are still missing, in the cells' order.
+#[inline(never)]
 fn sample(stage: &Stage, scratch: &mut Scratch, cells: &[Cell], corner: (usize, usize), shapes: u64) {
     let mut missing: Vec<Position> = Vec::new();
     let before = scratch.samples.0.len() * 8;
@@ -145,11 +146,13 @@ fn shadow_casters(stage: &Stage, samples: &Samples) -> [u64; MAX_LAMPS] {
 /// Marks the edge pixels in the tile and returns those of its neighbours.
 fn collect(edges: &[[bool; GRID]; GRID], tile: &mut Tile) -> Borders {
     let mut borders = Borders { corner: edges[TILE][TILE], ..Borders::default() };
-    for i in 0..TILE {
-        tile.edges[i] = (0..TILE).fold(0, |word, x| word | (edges[i][x] as u64) << x);
-        borders.right |= (edges[i][TILE] as u64) << i;
-        borders.bottom |= (edges[TILE][i] as u64) << i;
+    let word =
+        |bits: &mut dyn Iterator<Item = bool>| bits.zip(0..TILE).fold(0, |w, (b, i)| w | (b as u64) << i);
+    for (row, edges) in tile.edges.iter_mut().zip(edges) {
+        *row = word(&mut edges.iter().copied());
     }
+    borders.right = word(&mut edges.iter().map(|row| row[TILE]));
+    borders.bottom = word(&mut edges[TILE].iter().copied());
     borders
 }
 
@@ -176,13 +179,15 @@ impl Corners<'_> {
     fn is_edge(&self, stage: &Stage) -> bool {
         let limit = 2.0 * stage.quality.tolerance;
         let contrast = |s: Sample, first: Sample| (s.display() - first.display()).abs().max_element();
-        !(self.same_surface() && self.same_signature()) && !self.all(|s, first| contrast(s, first) <= limit)
+        let alike = self.same_surface() && self.same_signature();
+        !alike && !self.all(|s, first| contrast(s, first) <= limit)
     }
 
     /// Whether the bilinear value at the centre is within tolerance of the true one; within a
     /// quarter of it where mirrors or glass show different things at the samples.
     ///
     /// Written so that NaN refines. Without a centre sample the corners must be this close.
+    #[inline(never)]
     fn smooth(&self, stage: &Stage) -> bool {
         if !self.same_surface() {
             return false;
@@ -216,6 +221,7 @@ impl Corners<'_> {
 
 impl Surroundings {
     /// Whether a shape, or the shadow of one, may lie between the samples of a cell.
+    #[inline(never)]
     fn may_hide_something(&self, stage: &Stage, corner: (usize, usize), cell: Cell, known: &Corners) -> bool {
         let id = known.corners[0].id();
         let own = if id >= 0.0 { id as usize >> 2 } else { usize::MAX };

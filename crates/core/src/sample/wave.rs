@@ -67,12 +67,18 @@ impl Boxes {
     }
 }
 
+/// Footprint, world units, from which on what a mirrored ray hits dissolves into the scene's
+/// ambient light, and how fast: it is gone one unit per gain later.
+const BLUR_FROM: f32 = 0.2;
+const BLUR_GAIN: f32 = 1.2;
+
 /// Lists with fewer packets than this are traced against all occluders: culling would cost more.
 const CULL_FROM: usize = 6;
 
 /// Traces one sample for each of `positions` (px, right and down from the picture's corner) and
 /// appends them to `scratch.samples`, from the start of a new block on; returns the index of the
 /// first. `candidates` must hold all shapes the first rays may hit.
+#[inline(never)]
 pub fn trace(stage: &Stage, scratch: &mut Scratch, positions: &[Position], candidates: u64) -> usize {
     let first = scratch.samples.0.len();
     scratch.counters.add(Counter::PrimaryRays, positions.len() as u32);
@@ -110,6 +116,7 @@ pub type Position = (f32, f32);
 
 /// Traces `scratch.rays`, adds what they find to their samples, and appends what goes on from
 /// there to `scratch.next`.
+#[inline(never)]
 fn step(stage: &Stage, scratch: &mut Scratch, candidates: u64, level: u32) {
     let Scratch { samples, counters, rays, next, hits, occluders: boxes, .. } = scratch;
     hits.clear();
@@ -167,6 +174,7 @@ struct Found {
 }
 
 /// Light that the rays of a packet find at their hits, and the rays that go on from there.
+#[inline(never)]
 fn shade_packet(
     stage: &Stage,
     packet: &Packet,
@@ -202,6 +210,13 @@ fn shade_packet(
         let (sky, seen) = shade::background(&scene.background, rays, spread);
         light += (weight * sky) & !solid;
         id = solid.select(id, seen);
+    }
+    if level > 0 {
+        // What a rough mirror sees far off dissolves into the mean light around it.
+        let width = spread * hit.t - F::splat(BLUR_FROM);
+        let blur = (width * F::splat(BLUR_GAIN)).fast_max(F::ZERO).fast_min(F::ONE) & solid;
+        light += weight * shade::ambient(stage, rays.direction) * blur;
+        weight = weight * (F::ONE - blur);
     }
     let mut found = Found {
         light,
@@ -280,6 +295,7 @@ impl Found {
     }
 
     /// Appends the rays that go on, if what they may add is worth it.
+    #[inline(never)]
     fn spawn(&self, stage: &Stage, owners: &[u32], next: &mut RayList, counters: &mut Counters) {
         let cutoff = F::splat(stage.quality.cutoff / stage.scene.grade.exposure);
         let worth = |w: V3| w.x.fast_max(w.y).fast_max(w.z).simd_gt(cutoff).to_bitmask();

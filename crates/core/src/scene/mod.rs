@@ -49,6 +49,10 @@ pub struct Fog {
 pub struct Grade {
     /// Factor on linear light before the tone map.
     pub exposure: f32,
+    /// Light over this spreads, in exposed units.
+    pub bloom_threshold: f32,
+    /// How much of it, 0 for none.
+    pub bloom: f32,
     /// Display value of black.
     pub lift: Vec3,
     /// Exponent divisor per channel: under 1 deepens the middle.
@@ -65,6 +69,8 @@ impl Default for Grade {
     fn default() -> Self {
         Self {
             exposure: 1.0,
+            bloom_threshold: 1.0,
+            bloom: 0.0,
             lift: Vec3::ZERO,
             gamma: Vec3::ONE,
             gain: Vec3::ONE,

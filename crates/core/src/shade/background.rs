@@ -19,6 +19,7 @@ fn covered(x: F, half: F, w: F) -> F {
 /// [`NONE`] for the sky, `NONE - 1 - k` for disc k.
 ///
 /// `spread` is the width of a ray's footprint per unit of distance.
+#[inline(never)]
 pub fn background(sky: &Background, rays: &Rays8, spread: F) -> (V3, F) {
     let d = rays.direction;
     let mut colour = V3::splat(glam::Vec3::ZERO);
@@ -30,11 +31,11 @@ pub fn background(sky: &Background, rays: &Rays8, spread: F) -> (V3, F) {
         }
         let before = &sky.stops[i - 1];
         let x = (d.y - F::splat(before.y)) * F::splat(1.0 / (stop.y - before.y));
-        colour = colour + (at - V3::splat(before.colour)) * x.fast_max(F::ZERO).fast_min(F::ONE);
+        colour += (at - V3::splat(before.colour)) * x.fast_max(F::ZERO).fast_min(F::ONE);
     }
     for glow in &sky.glows {
         let x = (d.dot(V3::splat(glow.direction)) - F::ONE) * F::splat(glow.sharpness);
-        colour = colour + V3::splat(glow.colour) * exp(x);
+        colour += V3::splat(glow.colour) * exp(x);
     }
     let mut id = F::splat(NONE);
     for (k, disc) in sky.discs.iter().enumerate().rev() {
@@ -47,7 +48,7 @@ pub fn background(sky: &Background, rays: &Rays8, spread: F) -> (V3, F) {
         let height = y / (r + r) + F::splat(0.5);
         let low = V3::splat(disc.low);
         let shine = low + (V3::splat(disc.high) - low) * height.fast_max(F::ZERO).fast_min(F::ONE);
-        colour = colour + (shine - colour) * share;
+        colour += (shine - colour) * share;
         id = share.simd_gt(F::splat(0.5)).select(F::splat(NONE - 1.0 - k as f32), id);
     }
     (colour, id)
@@ -58,6 +59,7 @@ pub fn background(sky: &Background, rays: &Rays8, spread: F) -> (V3, F) {
 ///
 /// The edges are softened by the ray's footprint (its width at the rectangle is `spread` times
 /// the distance), as a rough mirror would.
+#[inline(never)]
 pub fn emitters(list: &[Emitter], rays: &Rays8, spread: F, t: F) -> (V3, F, F) {
     let mut light = V3::splat(glam::Vec3::ZERO);
     let (mut open, mut seen) = (F::ONE, F::ZERO);
@@ -75,7 +77,7 @@ pub fn emitters(list: &[Emitter], rays: &Rays8, spread: F, t: F) -> (V3, F, F) {
         let share = covered(p.dot(V3::splat(e.u)), F::splat(e.half[0]), w)
             * covered(p.dot(V3::splat(e.v)), F::splat(e.half[1]), w);
         let share = front.select(share, F::ZERO);
-        light = light + V3::splat(e.radiance) * (share * open);
+        light += V3::splat(e.radiance) * (share * open);
         open *= F::ONE - share;
         seen += share.simd_gt(F::splat(0.5)).select(F::splat((1 << k.min(20)) as f32), F::ZERO);
     }

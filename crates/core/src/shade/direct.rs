@@ -43,19 +43,25 @@ pub struct Local {
     pub rest: V3,
 }
 
+/// Mean light from the half space around a unit direction, by its height.
+pub fn ambient(stage: &Stage, direction: V3) -> V3 {
+    let [below, above] = stage.scene.ambient;
+    let x = direction.y * F::splat(0.5) + F::splat(0.5);
+    V3::splat(below) + V3::splat(above - below) * x
+}
+
 /// Adds the light from all around (by the normal's height) and the surface's own to that of the
 /// lamps; what a mirror takes away is missing from the diffuse part.
+#[inline(never)]
 pub fn local(stage: &Stage, s: &Surface, split: &Split, lit: Lit) -> Local {
-    let [below, above] = stage.scene.ambient;
-    let x = s.normal.y * F::splat(0.5) + F::splat(0.5);
-    let ambient = V3::splat(below) + V3::splat(above - below) * x;
+    let ambient = ambient(stage, s.normal);
     let mirrored = split.reflectance * s.value(Channel::Reflection);
     let kept = (V3::splat(Vec3::ONE) - mirrored) * s.value(Channel::Diffuse);
     Local { irradiance: (lit.irradiance + ambient) * kept, rest: lit.highlight + s.colour(Channel::Emission) }
 }
 
 /// Phong's highlight (r·v)^n with r·v = 2 (n·l)(n·v) - l·v, over the cosine's weight.
-#[inline(always)]
+#[inline(never)]
 fn phong(s: &Surface, l: V3, v: V3, n_l: F) -> V3 {
     let rv = (n_l + n_l) * s.normal.dot(v) - l.dot(v);
     s.colour(Channel::Specular) * pow(rv.fast_max(F::ZERO), s.value(Channel::Exponent))
@@ -65,7 +71,7 @@ fn phong(s: &Surface, l: V3, v: V3, n_l: F) -> V3 {
 ///
 /// Beckmann: D = exp(-tan²/m²) / (pi m² c⁴), 0 at grazing; V-cavities:
 /// G = min(1, 2 c n·v / v·h, 2 c n·l / v·h), taken as G / n·v so that nothing is divided by 0.
-#[inline(always)]
+#[inline(never)]
 fn cook_torrance(s: &Surface, l: V3, v: V3, n_l: F) -> V3 {
     let n = s.normal;
     let h = (l + v).normalize();
@@ -85,6 +91,7 @@ fn cook_torrance(s: &Surface, l: V3, v: V3, n_l: F) -> V3 {
 ///
 /// `codes` receives the visibility of each shadowed lamp, or holds it when it is known. It is 0,
 /// as for a lamp in plain view, where a surface faces away or lies outside the lamp's cone.
+#[inline(never)]
 pub fn direct(
     stage: &Stage,
     s: &Surface,

@@ -10,6 +10,7 @@ use crate::trace::Rays8;
 ///
 /// The slab's near and far planes are chosen by the direction's sign, so that 0 · inf = NaN never
 /// wins a comparison (NaN loses in the second operand of `fast_max`).
+#[inline(never)]
 pub fn fog(fog: &Fog, rays: &Rays8, t: F) -> (F, V3) {
     let (lo, hi) = (V3::splat(fog.lo), V3::splat(fog.hi));
     let (mut enter, mut exit) = (F::ZERO, t);

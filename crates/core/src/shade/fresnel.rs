@@ -31,6 +31,7 @@ pub struct Split {
 }
 
 /// Splits rays with unit directions `d` at the surfaces `s`.
+#[inline(never)]
 pub fn split(s: &Surface, d: V3) -> Split {
     let n = s.normal;
     let cos = -d.dot(n);

@@ -7,7 +7,7 @@ mod fresnel;
 mod lamps;
 
 pub use background::{background, emitters};
-pub use direct::{Codes, Lit, Local, MAX_LAMPS, Visibility, direct, local};
+pub use direct::{Codes, Lit, Local, MAX_LAMPS, Visibility, ambient, direct, local};
 pub use fog::fog;
 pub use fresnel::{Split, schlick, split};
 pub use lamps::{Lamp, lamps};

@@ -22,6 +22,7 @@ pub struct Hits {
 ///
 /// Bit i of `candidates` stands for the shapes whose index is i modulo 64: leaving out a bit must
 /// only leave out shapes that no lane can hit.
+#[inline(never)]
 pub fn nearest(scene: &Scene, rays: &Rays8, candidates: u64, counters: &mut Counters) -> Hits {
     let mut best = Hits { t: F::splat(f32::INFINITY), id: F::splat(NONE) };
     for index in 0..scene.shape_count() {

@@ -129,6 +129,7 @@ impl Shape<'_> {
     }
 
     /// Where `rays` cross the shape.
+    #[inline(never)]
     pub fn span(&self, rays: &Rays8) -> Span {
         match self {
             Shape::Sphere(s) => sphere(rays, s),

@@ -16,6 +16,7 @@ const END: f32 = 1.0 - 4.0 / 16_777_216.0;
 /// Returns per lane [`BLOCKED`], or the sum of `bits[shape]` over the transparent shapes that the
 /// segment crosses. `bits` holds a power of two for each transparent shape and 0 for opaque ones.
 /// Lanes outside `wanted` return anything.
+#[inline(never)]
 pub fn occlusion(
     scene: &Scene,
     bits: &[f32],

@@ -72,6 +72,7 @@ fn blended(scene: &Scene, own: &Sphere, p: V3, n: V3) -> V3 {
 }
 
 /// Puts `p` back onto the given part (0 side, 1 near cap, 2 far cap) of a shape.
+#[inline(never)]
 fn locate(scene: &Scene, shape: Shape, part: u32, p: V3) -> Located {
     match shape {
         Shape::Sphere(s) => {
@@ -124,6 +125,7 @@ fn round(
 
 /// Locates the surfaces that `rays` hit at distances `t`; ids as in [`super::Hits`]. `spread` is
 /// the width of the rays' footprints per unit of distance, which textures are filtered by.
+#[inline(never)]
 pub fn surface(scene: &Scene, rays: &Rays8, t: F, id: F, spread: F) -> Surface {
     let zero = V3::splat(glam::Vec3::ZERO);
     let up = V3::splat(glam::Vec3::Y);

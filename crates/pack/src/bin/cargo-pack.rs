@@ -1,1 +1,85 @@
-fn main() {}
+//! `cargo pack`: builds the intro for size and packs it into one file under 65,536 bytes.
+
+use lexopt::prelude::*;
+use luc_pack::report::{LIMIT, Report};
+use luc_pack::{Error, Method, Options, check, pack_elf_as, size_build, write_executable};
+use std::process::ExitCode;
+
+const HELP: &str = "\
+cargo pack [--check] [--method cm|lzma|raw]
+
+Builds the intro for size and packs it. Writes target/pack/luc, the packed file, and
+target/pack/luc-safe, the same program unpacked, and prints what became of each byte.
+
+      --check        run both files too, and compare what they do
+      --method NAME  cm: context mixing, smallest (default); lzma: starts faster;
+                     raw: no compression
+  -h, --help         this text
+
+Exit code 1: over 65,536 bytes, or the packed file does something else than the unpacked one.
+Exit code 2: it can't be built.
+";
+
+struct Arguments {
+    check: bool,
+    method: Method,
+}
+
+fn main() -> ExitCode {
+    let arguments = match arguments() {
+        Ok(Some(arguments)) => arguments,
+        Ok(None) => {
+            print!("{HELP}");
+            return ExitCode::SUCCESS;
+        }
+        Err(error) => return fail(&format!("{error} (--help tells more)"), 2),
+    };
+    match pack(&arguments) {
+        Ok(None) => ExitCode::SUCCESS,
+        Ok(Some(complaint)) => fail(&complaint, 1),
+        Err(error) => fail(&error.to_string(), 2),
+    }
+}
+
+fn fail(sentence: &str, code: u8) -> ExitCode {
+    eprintln!("cargo pack: {sentence}");
+    ExitCode::from(code)
+}
+
+fn arguments() -> Result<Option<Arguments>, lexopt::Error> {
+    let mut arguments = Arguments { check: false, method: Method::Cm };
+    let mut parser = lexopt::Parser::from_env();
+    while let Some(argument) = parser.next()? {
+        match argument {
+            Long("check") => arguments.check = true,
+            Long("method") => {
+                let name = parser.value()?.string()?;
+                arguments.method =
+                    Method::named(&name).ok_or(format!("no method '{name}': cm, lzma or raw"))?;
+            }
+            Short('h') | Long("help") => return Ok(None),
+            other => return Err(other.unexpected()),
+        }
+    }
+    Ok(Some(arguments))
+}
+
+/// Builds, packs, reports; what is wrong with the result, if anything.
+fn pack(arguments: &Arguments) -> Result<Option<String>, Error> {
+    let here = std::env::current_dir().map_err(Error::file("."))?;
+    let root = size_build::project_root(&here)?;
+    let output = root.join("target/pack");
+    let linked = size_build::build(&root, &output)?;
+    let linked = std::fs::read(&linked).map_err(Error::file(&linked))?;
+    let packed = pack_elf_as(&linked, &Options { method: arguments.method, name: "luc", needs_avx2: true })?;
+    let (file, safe) = (output.join("luc"), output.join("luc-safe"));
+    write_executable(&safe, &packed.stripped)?;
+    write_executable(&file, &packed.file)?;
+
+    let report = Report::new(linked.len(), &packed);
+    print!("{report}");
+    if report.total > LIMIT {
+        return Ok(Some(format!("{} bytes over the limit of {LIMIT}", report.total - LIMIT)));
+    }
+    Ok(if arguments.check { check::compare(&file, &safe)? } else { None })
+}

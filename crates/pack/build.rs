@@ -1,0 +1,76 @@
+//! Compiles the launcher to flat images that the library includes: the opener, and the main part
+//! once for each method.
+//!
+//! The launcher is x86-64 Linux code and nothing but; on any other system the images are empty,
+//! and packing says that it can't be done there.
+
+use std::env;
+use std::path::PathBuf;
+use std::process::Command;
+
+fn main() {
+    println!("cargo::rerun-if-changed=launcher");
+    println!("cargo::rerun-if-changed=src/codec");
+    let output = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR"));
+    let host = env::var("HOST").expect("cargo sets HOST");
+    let at_home = host == "x86_64-unknown-linux-gnu" && env::var("TARGET").as_ref() == Ok(&host);
+    let parts = [("opener", "opener"), ("main", "cm"), ("main", "lzma"), ("main", "raw")];
+    for (part, method) in parts {
+        let image = output.join(if part == "main" { format!("launcher-{method}") } else { part.to_owned() });
+        if at_home {
+            compile(part, method, &image);
+        } else {
+            std::fs::write(&image, []).expect("the output directory is writable");
+        }
+    }
+}
+
+/// Where the parts of the launcher lie when they run: as `src/codec/format.rs` has it.
+const OPENER_AT: usize = 0x40_0000 + 128;
+const MAIN_AT: usize = 0x1000_0000;
+
+fn compile(part: &str, method: &str, image: &PathBuf) {
+    let base = if part == "main" { MAIN_AT } else { OPENER_AT };
+    let directory = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").expect("cargo sets CARGO_MANIFEST_DIR"));
+    let script = directory.join("launcher/launcher.ld");
+    let status = Command::new(env::var_os("RUSTC").expect("cargo sets RUSTC"))
+        .arg(directory.join(format!("launcher/{part}.rs")))
+        .args(["--edition=2024", "--crate-name=launcher", "--crate-type=bin"])
+        .args(["--cfg", &format!("luc_method=\"{method}\"")])
+        .args(["-Copt-level=z", "-Cpanic=abort", "-Ccodegen-units=1", "-Clto=fat"])
+        .args(["-Crelocation-model=static", "-Cforce-unwind-tables=no", "-Cno-redzone=yes"])
+        // The system linker: the script is written for it.
+        .args(["-Clinker=cc", "-Clinker-features=-lld"])
+        .arg(format!("-Clink-arg=-Wl,--defsym=BASE={base}"))
+        .args(["-Clink-arg=-nostdlib", "-Clink-arg=-static", "-Clink-arg=-no-pie"])
+        .args([
+            "-Clink-arg=-Wl,--build-id=none,-z,noseparate-code,-z,max-page-size=4096",
+            "-Clink-arg=-Wl,-T",
+        ])
+        .arg(format!("-Clink-arg=-Wl,{}", script.display()))
+        .arg("-o")
+        .arg(image)
+        .status();
+    match status {
+        Ok(status) if status.success() => {}
+        _ => panic!("the launcher ({part}, {method}) did not compile"),
+    }
+    let program = std::fs::read(image).expect("the compiler wrote it");
+    std::fs::write(image, flat(&program, base)).expect("the output directory is writable");
+}
+
+/// What the one segment of an ELF file loads.
+///
+/// (The linker could write flat files itself, but then GNU ld resolves calls through the table of
+/// global offsets wrongly.)
+fn flat(program: &[u8], base: usize) -> &[u8] {
+    let word = |at: usize| u64::from_le_bytes(program[at..at + 8].try_into().expect("eight bytes")) as usize;
+    let segments = word(56) & 0xffff;
+    let loaded: Vec<usize> =
+        (0..segments).map(|i| word(32) + i * 56).filter(|&at| word(at) as u32 == 1).collect();
+    let [segment] = loaded[..] else { panic!("the launcher has {} segments", loaded.len()) };
+    let (offset, address, length) = (word(segment + 8), word(segment + 16), word(segment + 32));
+    // The linker may have put its own headers into the segment, in front of the image.
+    let skip = base - address;
+    &program[offset + skip..offset + length]
+}

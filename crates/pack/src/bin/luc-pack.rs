@@ -1,0 +1,77 @@
+//! `luc-pack`: packs any x86-64 Linux program.
+
+use lexopt::prelude::*;
+use luc_pack::{Error, Method, Options, pack_elf_as, write_executable};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+const HELP: &str = "\
+luc-pack FILE -o OUT [--method cm|lzma|raw]
+
+Packs the x86-64 Linux program FILE into the executable OUT.
+
+  -o, --output OUT   where to write
+      --method NAME  cm: context mixing, smallest (default); lzma: starts faster;
+                     raw: no compression
+  -h, --help         this text
+";
+
+struct Arguments {
+    input: PathBuf,
+    output: PathBuf,
+    method: Method,
+}
+
+fn main() -> ExitCode {
+    let arguments = match arguments() {
+        Ok(Some(arguments)) => arguments,
+        Ok(None) => {
+            print!("{HELP}");
+            return ExitCode::SUCCESS;
+        }
+        Err(error) => return fail(&format!("{error} (--help tells more)")),
+    };
+    match pack(&arguments) {
+        Ok(report) => {
+            println!("{report}");
+            ExitCode::SUCCESS
+        }
+        Err(error @ Error::File(..)) => fail(&error.to_string()),
+        Err(error) => fail(&format!("{}: {error}", arguments.input.display())),
+    }
+}
+
+fn fail(sentence: &str) -> ExitCode {
+    eprintln!("luc-pack: {sentence}");
+    ExitCode::from(2)
+}
+
+fn arguments() -> Result<Option<Arguments>, lexopt::Error> {
+    let (mut input, mut output, mut method) = (None, None, Method::Cm);
+    let mut parser = lexopt::Parser::from_env();
+    while let Some(argument) = parser.next()? {
+        match argument {
+            Value(file) if input.is_none() => input = Some(file.into()),
+            Short('o') | Long("output") => output = Some(parser.value()?.into()),
+            Long("method") => {
+                let name = parser.value()?.string()?;
+                method = Method::named(&name).ok_or(format!("no method '{name}': cm, lzma or raw"))?;
+            }
+            Short('h') | Long("help") => return Ok(None),
+            other => return Err(other.unexpected()),
+        }
+    }
+    let input = input.ok_or("which file is to be packed?")?;
+    let output = output.ok_or("where to? -o OUT is missing")?;
+    Ok(Some(Arguments { input, output, method }))
+}
+
+fn pack(arguments: &Arguments) -> Result<String, Error> {
+    let file = std::fs::read(&arguments.input).map_err(Error::file(&arguments.input))?;
+    let name = arguments.output.file_name().unwrap_or_default().to_string_lossy();
+    let options = Options { method: arguments.method, name: &name, needs_avx2: false };
+    let packed = pack_elf_as(&file, &options)?;
+    write_executable(&arguments.output, &packed.file)?;
+    let (before, after) = (file.len(), packed.file.len());
+    Ok(format!("{before} bytes, {} stripped, {after} packed", packed.stripped.len()))
+}

@@ -1,0 +1,19 @@
+//! What packer and launcher share: the coders' decoding halves and everything they rest on.
+//!
+//! These files are compiled twice: into the packer's library, and, without the standard library,
+//! into both parts of the launcher in front of a packed program. Whatever the packer assumes about the decoder
+//! therefore is the decoder. Because of the launcher nothing here may panic, allocate, or call
+//! into a maths library: indices are masked or checked with `get`, and floating point is plain
+//! IEEE addition, multiplication and division, which give the same bits everywhere.
+
+pub mod checksum;
+pub mod filter;
+pub mod format;
+pub mod interval;
+pub mod logistic;
+pub mod small;
+pub mod x86;
+
+pub mod cm;
+pub mod lzma;
+pub mod model;

@@ -1,0 +1,116 @@
+//! The packers' encoding halves.
+
+use crate::codec::interval::Interval;
+use crate::codec::model::Model;
+use crate::codec::small;
+
+/// Memory of zeros as a model.
+pub fn new_model() -> Box<Model> {
+    let layout = std::alloc::Layout::new::<Model>();
+    // SAFETY: the layout is not empty, and a model is numbers (and one enum whose first variant
+    // is 0), for all of which zero is a valid value.
+    unsafe {
+        let memory = std::alloc::alloc_zeroed(layout).cast::<Model>();
+        if memory.is_null() {
+            std::alloc::handle_alloc_error(layout);
+        }
+        Box::from_raw(memory)
+    }
+}
+
+/// Context mixing: what [`crate::codec::cm::decode`] decodes.
+pub fn cm(bytes: &[u8]) -> Vec<u8> {
+    let mut model = new_model();
+    let mut encoder = Encoder::new();
+    model.start();
+    for (position, &byte) in bytes.iter().enumerate() {
+        for bit in bits(byte) {
+            encoder.bit(bit, model.predict());
+            model.learn(bit);
+        }
+        model.end_byte(&bytes[..position + 1]);
+    }
+    encoder.finish()
+}
+
+/// The small coder: what [`small::decode`] decodes.
+pub fn small(bytes: &[u8]) -> Vec<u8> {
+    let mut cells = new_cells();
+    let mut model = small::Model::new(&mut cells);
+    let mut encoder = Encoder::new();
+    for bit in bytes.iter().flat_map(|&byte| bits(byte)) {
+        encoder.bit(bit, model.predict());
+        model.learn(bit);
+    }
+    encoder.finish()
+}
+
+/// Memory for the small coder.
+pub fn new_cells() -> Box<small::Cells> {
+    let cells = vec![small::Cell::default(); size_of::<small::Cells>() / size_of::<small::Cell>()];
+    cells.into_boxed_slice().try_into().unwrap_or_else(|_| unreachable!("the length is right"))
+}
+
+/// The bits of a byte, highest first.
+fn bits(byte: u8) -> impl Iterator<Item = u32> {
+    (0..8).rev().map(move |shift| u32::from(byte) >> shift & 1)
+}
+
+/// Writes bits for [`crate::codec::interval::Decoder`].
+struct Encoder {
+    interval: Interval,
+    packed: Vec<u8>,
+}
+
+impl Encoder {
+    fn new() -> Encoder {
+        Encoder { interval: Interval::WHOLE, packed: Vec::new() }
+    }
+
+    /// A bit that is a one with the probability `one`, in 16 bits.
+    fn bit(&mut self, bit: u32, one: u32) {
+        self.interval.narrow(self.interval.split(one), bit);
+        let mut top = (self.interval.high >> 24) as u8;
+        while self.interval.settled() {
+            self.packed.push(top);
+            top = (self.interval.high >> 24) as u8;
+        }
+    }
+
+    /// The code, ended by the fewest bytes that lie in the interval when zeros follow.
+    fn finish(mut self) -> Vec<u8> {
+        let Interval { low, high } = self.interval;
+        let kept = |count: u32| if count == 0 { 0 } else { high & !0 << (32 - 8 * count) };
+        let count = (0..4).find(|&count| kept(count) >= low).unwrap_or(4);
+        self.packed.extend(&high.to_be_bytes()[..count as usize]);
+        self.packed
+    }
+}
+
+/// LZMA: what [`crate::codec::lzma::decode`] decodes.
+pub fn lzma(bytes: &[u8]) -> Vec<u8> {
+    use lzma_rust2::{EncodeMode, LzmaOptions, LzmaWriter, MfType};
+    use std::io::Write;
+
+    let options = LzmaOptions {
+        dict_size: (bytes.len() as u32).next_power_of_two().max(1 << 16),
+        lc: 3,
+        lp: 0,
+        pb: 0,
+        mode: EncodeMode::Normal,
+        nice_len: LzmaOptions::NICE_LEN_MAX,
+        mf: MfType::Bt4,
+        depth_limit: 1000,
+        preset_dict: None,
+    };
+    let in_memory = "writing to memory doesn't fail";
+    let mut writer = LzmaWriter::new_no_header(Vec::new(), &options, false).expect("the options are valid");
+    writer.write_all(bytes).expect(in_memory);
+    let mut packed = writer.finish().expect(in_memory);
+    // The first byte is always 0; the last ones may be zeros, and read as zeros when missing.
+    packed.remove(0);
+    while packed.last() == Some(&0) {
+        packed.pop();
+    }
+    packed
+}

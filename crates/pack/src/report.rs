@@ -1,0 +1,71 @@
+//! The table that `cargo pack` prints: where the bytes of the file go.
+
+use crate::Packed;
+use std::fmt;
+
+/// What the packed file may have, bytes.
+pub const LIMIT: usize = 65_536;
+
+/// The sizes of one build, bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Report {
+    /// The program as the linker wrote it, with symbols.
+    pub linked: usize,
+    /// What the system needs of it.
+    pub stripped: usize,
+    /// That, compressed.
+    pub payload: usize,
+    /// Launcher, headers and all else.
+    pub launcher: usize,
+    /// The file.
+    pub total: usize,
+}
+
+impl Report {
+    /// The sizes of a packed program.
+    pub fn new(linked: usize, packed: &Packed) -> Report {
+        let total = packed.file.len();
+        let (stripped, payload) = (packed.stripped.len(), packed.payload);
+        Report { linked, stripped, payload, launcher: total - payload, total }
+    }
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let left = LIMIT as i64 - self.total as i64;
+        writeln!(f, "linked         {:>8}", grouped(self.linked as i64))?;
+        writeln!(f, "stripped       {:>8}", grouped(self.stripped as i64))?;
+        writeln!(f, "packed payload {:>8}", grouped(self.payload as i64))?;
+        writeln!(f, "launcher       {:>8}", grouped(self.launcher as i64))?;
+        writeln!(f, "total          {:>8}", grouped(self.total as i64))?;
+        writeln!(f, "left of {} {:>8}", grouped(LIMIT as i64), grouped(left))
+    }
+}
+
+/// A number with commas between its thousands.
+fn grouped(number: i64) -> String {
+    let digits = number.abs().to_string();
+    let mut text = String::new();
+    for (i, digit) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    if number < 0 { format!("-{text}") } else { text }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn adds_up() {
+        let packed = Packed { file: vec![0; 23_371], stripped: vec![0; 44_952], payload: 17_370 };
+        let text = Report::new(81_128, &packed).to_string();
+        let expected = "linked           81,128\nstripped         44,952\npacked payload   17,370\n\
+                        launcher          6,001\ntotal            23,371\nleft of 65,536   42,165\n";
+        assert_eq!(text, expected);
+        assert_eq!(grouped(-1_234_567), "-1,234,567");
+    }
+}

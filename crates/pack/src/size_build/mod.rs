@@ -1,0 +1,82 @@
+//! The size build: the intro as a small ordinary executable, ready to be packed.
+//!
+//! A Rust program carries a standard library that was compiled for speed and for good messages
+//! when something fails: 175 kB packed, before the first line of its own. So this build compiles
+//! the standard library too, for size and without messages, which needs its source
+//! ([`toolchain`]) and, on a stable compiler, the permission `RUSTC_BOOTSTRAP`. Dependencies are
+//! trimmed copies ([`trim`]) in a workspace of their own ([`workspace`]).
+
+mod edit;
+pub mod std_source;
+pub mod toolchain;
+pub mod trim;
+pub mod workspace;
+
+use crate::Error;
+use std::path::{Path, PathBuf};
+use toolchain::Toolchain;
+
+/// Compiler flags, with the reason for each group.
+const RUSTFLAGS: &[&str] = &[
+    // The size build's own code: src/entry.rs.
+    "--cfg=luc_size",
+    // As .cargo/config.toml, whose flags these replace. Without SSE4.1, which AVX2 includes,
+    // rounding would also bring all of 128-bit floating point along (13 kB packed).
+    "-Ctarget-feature=+avx2",
+    // No messages, no unwinding, no places in the source, no debug formatting.
+    "-Zunstable-options",
+    "-Cpanic=immediate-abort",
+    "-Zlocation-detail=none",
+    "-Zfmt-debug=none",
+    "-Cforce-unwind-tables=no",
+    // At a fixed address: no relocations.
+    "-Crelocation-model=static",
+    "-Clink-arg=-no-pie",
+    // The entry is the program's own.
+    "-Clink-arg=-nostartfiles",
+    // Nothing in the file that the system doesn't need, and one segment for code and constants.
+    "-Clink-arg=-Wl,--build-id=none,--no-eh-frame-hdr,--hash-style=gnu",
+    "-Clink-arg=-Wl,-z,norelro,-z,noseparate-code",
+    // The C library's maths before the standard library's copy of it, which is larger.
+    "-Zpre-link-arg=-Wl,--no-as-needed",
+    "-Zpre-link-arg=-lm",
+    "-Zpre-link-arg=-Wl,--as-needed",
+    // Warnings are for the ordinary build, which sees the same code.
+    "--cap-lints=allow",
+];
+
+/// Flags for minifb's scaler, which is written in C.
+const CFLAGS: &str = "-Os -fno-asynchronous-unwind-tables -fcf-protection=none -ffunction-sections -fno-pic \
+                      -fno-tree-vectorize";
+
+/// The root of the project: the nearest directory above `here` that has this crate in it.
+pub fn project_root(here: &Path) -> Result<PathBuf, Error> {
+    let root = here.ancestors().find(|directory| directory.join("crates/pack/Cargo.toml").is_file());
+    root.map(Path::to_owned).ok_or(Error::Command("not inside the project".to_owned()))
+}
+
+/// Builds the intro; returns the path of the linked executable.
+pub fn build(root: &Path, output: &Path) -> Result<PathBuf, Error> {
+    let toolchain = Toolchain::find(root)?;
+    let workspace = workspace::prepare(root, output, &toolchain)?;
+    let target_directory = output.join("build");
+    let mut command = toolchain.cargo();
+    command
+        .current_dir(&workspace)
+        .args(["build", "--quiet", "--locked", "--package=luc", "--bin=luc", "--profile=intro"])
+        .args(["--target", workspace::TARGET])
+        .args(["-Zbuild-std=std,panic_abort", "-Zbuild-std-features=optimize_for_size"])
+        .arg("--target-dir")
+        .arg(&target_directory)
+        .env("RUSTC_BOOTSTRAP", "1")
+        .env("CARGO_ENCODED_RUSTFLAGS", RUSTFLAGS.join("\x1f"))
+        .env("CFLAGS_x86_64_unknown_linux_gnu", CFLAGS);
+    if let Some(source) = std_source::prepare(&toolchain.library, &output.join("std"))? {
+        command.env(std_source::VARIABLE, source);
+    }
+    let status = command.status().map_err(Error::file(&toolchain.cargo))?;
+    if !status.success() {
+        return Err(Error::Command("the size build failed; cargo's messages are above".to_owned()));
+    }
+    Ok(target_directory.join(workspace::TARGET).join("intro/luc"))
+}
