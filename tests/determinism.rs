@@ -8,6 +8,7 @@ mod support;
 use luc::show;
 use luc_core::quality::Quality;
 use luc_core::render::Renderer;
+use support::crossing::{self, Backdrop, Thing};
 use support::golden::{self, FINGERPRINTS, FRAMES, SIZE};
 use support::picture::{Picture, fingerprint};
 use support::run;
@@ -96,6 +97,28 @@ fn leaving_out_what_a_tile_cannot_meet_changes_no_byte() {
                 let some = alone(n, size, &Quality { cull: true, ..quality.every_pixel() });
                 let what = format!("{part} {frame} {preset}, every pixel, culled");
                 same(&all, &some, &what, &replay(n, preset, size));
+            }
+        }
+    }
+}
+
+#[test]
+fn leaving_out_changes_no_byte_of_small_things_either() {
+    let quality = Quality::named("high").unwrap();
+    let mut renderer = Renderer::default();
+    for thing in [Thing::Bar, Thing::EndlessBar, Thing::Ball, Thing::Triangle, Thing::Shadow] {
+        for backdrop in [Backdrop::Dark, Backdrop::Floor, Backdrop::Wall, Backdrop::Globe] {
+            for frame in [0, 23, 31, 59] {
+                let scene = crossing::scene(thing, backdrop, frame, true);
+                let mut picture = |cull| {
+                    let mut pixels = vec![0; (SIZE.0 * SIZE.1) as usize];
+                    renderer.frame(&scene, 0, SIZE, &Quality { cull, ..quality.every_pixel() }, &mut pixels);
+                    Picture { width: SIZE.0, height: SIZE.1, pixels }
+                };
+                let what = format!("{thing:?} over {backdrop:?}, frame {frame}, culled");
+                let call =
+                    format!("crossing::scene(Thing::{thing:?}, Backdrop::{backdrop:?}, {frame}, true)");
+                same(&picture(false), &picture(true), &what, &call);
             }
         }
     }

@@ -1,6 +1,7 @@
 //! What the suites share: the program under test and its output, pictures, reference frames.
 #![allow(dead_code)] // each suite uses a part of it
 
+pub mod crossing;
 pub mod golden;
 pub mod picture;
 #[cfg(target_os = "linux")]
