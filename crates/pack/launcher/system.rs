@@ -136,7 +136,7 @@ pub fn wide_registers_saved() -> bool {
     enabled & 0b110 == 0b110
 }
 
-/// Writes the program to `file`; only returns if it cannot be started from there.
+/// Starts the program that is in `file`; only returns if that is impossible.
 fn execute(file: usize, arguments: *const usize, environment: *const usize) {
     // SAFETY: the lists are those of this process.
     unsafe { call(EXECVEAT, file, c"".as_ptr().addr(), arguments.addr(), environment.addr(), AT_EMPTY_PATH) };
@@ -180,9 +180,12 @@ pub fn run_from_file(program: &[u8], arguments: *const usize, environment: *cons
         let mut end = 0;
         // The directory, a slash and a number that no one else has: together shorter than `path`,
         // whose last byte stays 0.
-        // SAFETY: the directory is a string that ends with a zero.
-        while end < LONGEST - 32 && unsafe { *directory.add(end) } != 0 {
+        while end < LONGEST - 32 {
+            // SAFETY: the directory is a string that ends with a zero, behind which nothing is read.
             path[end] = unsafe { *directory.add(end) };
+            if path[end] == 0 {
+                break;
+            }
             end += 1;
         }
         for (i, place) in path[end..].iter_mut().take(18).enumerate() {

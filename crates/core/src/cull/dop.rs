@@ -6,7 +6,7 @@
 //! an axis u come from the two tangents through the eye in the plane (u, z):
 //! k = (u z ± r sqrt(u² + z² - r²)) / (z² - r²).
 
-use crate::math::lanes::F;
+use crate::math::lanes::{F, splat};
 use crate::scene::Scene;
 use crate::trace::Shape;
 use glam::{Mat3, Vec2, Vec3};
@@ -69,9 +69,9 @@ pub fn nearest_in_cone(c: Vec3, radius: f32, e: Vec3, reach: f32) -> f32 {
 /// Extents of the ball at `c` (view coordinates) along axes; `c.z > r`.
 fn ball_extents(x: F, y: F, c: Vec3, r: f32) -> (F, F) {
     let r = r + 2e-6 * (r + c.abs().max_element());
-    let u = x * F::splat(c.x) + y * F::splat(c.y);
-    let (z, r2) = (F::splat(c.z), F::splat(r * r));
-    let root = F::splat(r) * (u * u + z * z - r2).fast_max(F::ZERO).sqrt();
+    let u = x * splat(c.x) + y * splat(c.y);
+    let (z, r2) = (splat(c.z), splat(r * r));
+    let root = splat(r) * (u * u + z * z - r2).fast_max(F::ZERO).sqrt();
     let scale = F::ONE / (z * z - r2);
     ((u * z - root) * scale, (u * z + root) * scale)
 }
@@ -96,7 +96,7 @@ impl Dop {
     fn along(direction: Vec2) -> Dop {
         let u = direction.normalize_or(Vec2::X);
         let (cos, sin) = (F::new(COS), F::new(SIN));
-        let (x, y) = (F::splat(u.x), F::splat(u.y));
+        let (x, y) = (splat(u.x), splat(u.y));
         Dop { axis_x: cos * x - sin * y, axis_y: sin * x + cos * y, ..Dop::NOWHERE }
     }
 
@@ -131,8 +131,8 @@ impl Dop {
             if p.z < NEAR {
                 return Dop::EVERYWHERE;
             }
-            let e = (dop.axis_x * F::splat(p.x) + dop.axis_y * F::splat(p.y)) * F::splat(1.0 / p.z);
-            let slack = e.abs() * F::splat(2e-6) + F::splat(1e-6);
+            let e = (dop.axis_x * splat(p.x) + dop.axis_y * splat(p.y)) * splat(1.0 / p.z);
+            let slack = e.abs() * splat(2e-6) + splat(1e-6);
             dop.lo = dop.lo.fast_min(e - slack);
             dop.hi = dop.hi.fast_max(e + slack);
             dop.near = dop.near.min(p.z);
@@ -222,8 +222,8 @@ impl Dop {
     /// Whether the shape may appear in the rectangle around `centre` with these half sides, on
     /// the plane one unit ahead.
     pub fn meets_rectangle(&self, centre: Vec2, half: Vec2) -> bool {
-        let e = self.axis_x * F::splat(centre.x) + self.axis_y * F::splat(centre.y);
-        let h = self.axis_x.abs() * F::splat(half.x) + self.axis_y.abs() * F::splat(half.y);
+        let e = self.axis_x * splat(centre.x) + self.axis_y * splat(centre.y);
+        let h = self.axis_x.abs() * splat(half.x) + self.axis_y.abs() * splat(half.y);
         ((e + h).simd_ge(self.lo) & (e - h).simd_le(self.hi)).all()
     }
 
@@ -237,12 +237,12 @@ impl Dop {
         if self.unbounded || self.near == f32::INFINITY {
             return self.unbounded;
         }
-        let slack8 = F::splat(slack);
+        let slack8 = splat(slack);
         let room = |bound: F| slack8 * (F::ONE + bound * bound).sqrt();
         let (inside_lo, inside_hi) = (self.lo, self.hi);
         let (mut over_lo, mut under_hi, mut ahead) = (F::ZERO, F::ZERO, false);
         for p in points {
-            let (e, z) = (self.axis_x * F::splat(p.x) + self.axis_y * F::splat(p.y), F::splat(p.z));
+            let (e, z) = (self.axis_x * splat(p.x) + self.axis_y * splat(p.y), splat(p.z));
             over_lo |= (e - inside_lo * z).simd_ge(-room(inside_lo));
             under_hi |= (e - inside_hi * z).simd_le(room(inside_hi));
             ahead |= p.z > -slack;

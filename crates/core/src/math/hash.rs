@@ -5,7 +5,7 @@
 //! the key entering twice: before the first round and between the two multiplications. Entering once, at
 //! the start, would make two streams the same numbers in an order permuted by an exclusive or.
 
-use super::lanes::{F, U};
+use super::lanes::{F, U, splat, splat_u};
 
 const GOLDEN: u32 = 0x9e37_79b9;
 const MULTIPLY: [u32; 2] = [0x7feb_352d, 0x846c_a68b];
@@ -44,29 +44,29 @@ pub fn unit(bits: u32) -> f32 {
 pub fn mix_x8(a: U, b: U) -> U {
     let mut h = a ^ b;
     h ^= h >> 16u32;
-    h = h * U::splat(MULTIPLY[0]) + b;
+    h = h * splat_u(MULTIPLY[0]) + b;
     h ^= h >> 15u32;
-    h *= U::splat(MULTIPLY[1]);
+    h *= splat_u(MULTIPLY[1]);
     h ^ (h >> 16u32)
 }
 
 /// Eight [`hash2`] at once, bit for bit.
 #[inline]
 pub fn hash2_x8(a: U, b: U) -> U {
-    mix_x8(a, mix_x8(b, U::splat(GOLDEN)))
+    mix_x8(a, mix_x8(b, splat_u(GOLDEN)))
 }
 
 /// Eight pixels' [`hash`] at once, bit for bit; frame and dimension are hashed once for all.
 #[inline]
 pub fn hash_x8(pixel: U, frame: u32, dimension: u32) -> U {
-    mix_x8(pixel, U::splat(hash2(frame, dimension)))
+    mix_x8(pixel, splat_u(hash2(frame, dimension)))
 }
 
 /// Eight [`unit()`] at once, bit for bit.
 #[inline(always)]
 pub fn unit_x8(bits: U) -> F {
     // 24 bits fit into the signed conversion, which is exact.
-    F::from_i32x8((bits >> 8u32).cast_signed()) * F::splat(1.0 / 16_777_216.0)
+    F::from_i32x8((bits >> 8u32).cast_signed()) * splat(1.0 / 16_777_216.0)
 }
 
 #[cfg(test)]

@@ -31,9 +31,24 @@ pub const FALSE: F = ZERO;
 pub const LANE_INDEX: U = U::new([0, 1, 2, 3, 4, 5, 6, 7]);
 
 /// Eight copies of `v`.
+///
+/// In constants use [`F::splat`]: at run time, compiled for size, that writes eight numbers in a
+/// loop.
 #[inline(always)]
-pub const fn splat(v: f32) -> F {
-    F::splat(v)
+pub fn splat(v: f32) -> F {
+    #[cfg(all(target_arch = "x86_64", target_feature = "avx"))]
+    return F::from(safe_arch::set_splat_m256(v).0);
+    #[cfg(not(all(target_arch = "x86_64", target_feature = "avx")))]
+    return F::splat(v);
+}
+
+/// Eight copies of `v`; see [`splat`].
+#[inline(always)]
+pub fn splat_u(v: u32) -> U {
+    #[cfg(all(target_arch = "x86_64", target_feature = "avx2"))]
+    return U::from(safe_arch::set_splat_i32_m256i(v as i32).0);
+    #[cfg(not(all(target_arch = "x86_64", target_feature = "avx2")))]
+    return U::splat(v);
 }
 
 /// `a` where the mask is true, `b` elsewhere.
@@ -162,8 +177,8 @@ impl V3 {
 
     /// Eight copies of `v`.
     #[inline(always)]
-    pub const fn splat(v: Vec3) -> V3 {
-        V3::new(F::splat(v.x), F::splat(v.y), F::splat(v.z))
+    pub fn splat(v: Vec3) -> V3 {
+        V3::new(splat(v.x), splat(v.y), splat(v.z))
     }
 
     /// Eight vectors, lane by lane.

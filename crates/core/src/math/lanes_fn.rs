@@ -5,10 +5,10 @@
 //! of the scalar functions; the polynomials are minimax fits to f32 accuracy. No result is NaN except
 //! where stated, so that one bad sample cannot spread through a filter.
 
-use super::lanes::{F, INFINITY, ONE, U, max, min, select, splat};
+use super::lanes::{F, INFINITY, ONE, U, max, min, select, splat, splat_u};
 
 /// Adding this to |t| < 2²¹ rounds t to the nearest integer and leaves it in the low bits.
-const ROUND: F = splat(12_582_912.0); // 1.5·2²³
+const ROUND: F = F::splat(12_582_912.0); // 1.5·2²³
 /// Below this 2^t leaves the normal numbers.
 const MIN_EXPONENT: f32 = -126.0;
 
@@ -49,11 +49,11 @@ pub fn exp2(x: F) -> F {
 #[inline(never)]
 pub fn exp(x: F) -> F {
     // ln 2 as 15 bits, whose products with n are exact, and the rest.
-    const LN2_HIGH: F = splat(0.693145751953125);
-    const LN2_LOW: F = splat(1.428606820309417e-6);
-    const LOG2_E: F = splat(core::f32::consts::LOG2_E);
-    const LOWEST: F = splat(-87.33654);
-    const HIGHEST: F = splat(88.72283);
+    const LN2_HIGH: F = F::splat(0.693145751953125);
+    const LN2_LOW: F = F::splat(1.428606820309417e-6);
+    const LOG2_E: F = F::splat(core::f32::consts::LOG2_E);
+    const LOWEST: F = F::splat(-87.33654);
+    const HIGHEST: F = F::splat(88.72283);
     let t = min(max(x, LOWEST), HIGHEST);
     let shifted = t * LOG2_E + ROUND;
     let n = shifted - ROUND;
@@ -92,7 +92,7 @@ pub fn pow(x: F, y: F) -> F {
     // Large enough to leave the range for any normal y, and still 0 for y = 0.
     let k = select(x.simd_ge(splat(f32::MIN_POSITIVE)), k, splat(-f32::MAX));
     // k times the upper 12 bits of y is exact, so no digits are lost to the integer part.
-    let high = F::from_bits(y.to_bits() & U::splat(0xffff_f000));
+    let high = F::from_bits(y.to_bits() & splat_u(0xffff_f000));
     let whole = high * k;
     let rest = y * rest + (y - high) * k;
     let t = whole + rest;
@@ -106,9 +106,9 @@ pub fn pow(x: F, y: F) -> F {
 #[inline(never)]
 pub fn sin_cos(x: F) -> (F, F) {
     // π/2 as 14 + 14 + 24 bits: products with n < 2¹⁰ are exact in the first two.
-    const HIGH: F = splat(1.5706787109375);
-    const MIDDLE: F = splat(0.00011761486530303955);
-    const LOW: F = splat(9.920935796805404e-10);
+    const HIGH: F = F::splat(1.5706787109375);
+    const MIDDLE: F = F::splat(0.00011761486530303955);
+    const LOW: F = F::splat(9.920935796805404e-10);
     let shifted = x * splat(core::f32::consts::FRAC_2_PI) + ROUND;
     let n = shifted - ROUND;
     let r = ((x - n * HIGH) - n * MIDDLE) - n * LOW;
@@ -121,9 +121,9 @@ pub fn sin_cos(x: F) -> (F, F) {
     let (sin, cos) = (r + r * (z * sin), ONE + z * cos);
     // Odd quadrants swap the two; bit 1 of the quadrant negates the sine, of the next one the cosine.
     let quadrant = shifted.to_bits();
-    let odd = F::from_bits((quadrant & U::splat(1)).simd_eq(U::splat(1)));
-    let sign = |q: U| F::from_bits((q & U::splat(2)) << 30u32);
-    (select(odd, cos, sin) ^ sign(quadrant), select(odd, sin, cos) ^ sign(quadrant + U::splat(1)))
+    let odd = F::from_bits((quadrant & splat_u(1)).simd_eq(splat_u(1)));
+    let sign = |q: U| F::from_bits((q & splat_u(2)) << 30u32);
+    (select(odd, cos, sin) ^ sign(quadrant), select(odd, sin, cos) ^ sign(quadrant + splat_u(1)))
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Value noise: hashed values at the points of the integer lattice, joined smoothly.
 
 use super::hash::mix_x8;
-use super::lanes::{F, U, V3, splat};
+use super::lanes::{F, U, V3, splat, splat_u};
 
 /// Adding this to an integer |i| < 2²² leaves it in the low bits.
 const ROUND: f32 = 12_582_912.0; // 1.5·2²³
@@ -16,11 +16,11 @@ pub fn value_noise(p: V3) -> F {
     let (u, v, w) = (ease(f.x), ease(f.y), ease(f.z));
     let bits = |x: F| (x + splat(ROUND)).to_bits();
     let (x, y, z) = (bits(cell.x), bits(cell.y), bits(cell.z));
-    let one = U::splat(1);
+    let one = splat_u(1);
     let value = |x: U, y: U, z: U| {
         let h = mix_x8(mix_x8(x, y), z);
         // 23 bits as a mantissa: 2 to 4, then -1 to 1.
-        F::from_bits((h >> 9u32) | U::splat(0x4000_0000)) - splat(3.0)
+        F::from_bits((h >> 9u32) | splat_u(0x4000_0000)) - splat(3.0)
     };
     let row = |y: U, z: U| {
         let (a, b) = (value(x, y, z), value(x + one, y, z));

@@ -7,7 +7,7 @@
 //! of seven taps (sigma 1.22 px), and the octaves are joined bilinearly with weights 0.35, 0.28,
 //! 0.22 and 0.15 (after Jimenez 2014, with fixed weights).
 
-use crate::math::lanes::{F, V3};
+use crate::math::lanes::{F, V3, splat};
 use crate::parallel;
 use crate::render::Stage;
 use crate::sample::{TILE, Tile};
@@ -64,8 +64,7 @@ impl Glow {
                 let mut along = vec![0.0; plane.len()];
                 for (out, row) in along.chunks_mut(stride).zip(plane.chunks(stride)) {
                     for x in (PAD..PAD + width).step_by(8) {
-                        let sum =
-                            (0..7).fold(F::ZERO, |sum, k| sum + load(row, x + k - 3) * F::splat(TAPS[k]));
+                        let sum = (0..7).fold(F::ZERO, |sum, k| sum + load(row, x + k - 3) * splat(TAPS[k]));
                         out[x..x + 8].copy_from_slice(sum.as_array());
                     }
                 }
@@ -73,7 +72,7 @@ impl Glow {
                     for x in (PAD..PAD + width).step_by(8) {
                         let sum = (0..7).fold(F::ZERO, |sum, k| {
                             let y = (y + k).saturating_sub(3).min(height - 1);
-                            sum + load(&along[y * stride..], x) * F::splat(TAPS[k])
+                            sum + load(&along[y * stride..], x) * splat(TAPS[k])
                         });
                         out[x..x + 8].copy_from_slice(sum.as_array());
                     }
@@ -119,7 +118,7 @@ impl Glow {
                 a + (b - a) * fx
             };
             let (a, b) = (line(row), line(below));
-            a + (b - a) * F::splat(fy)
+            a + (b - a) * splat(fy)
         };
         let [r, g, b] = &self.planes;
         V3 { x: value(r), y: value(g), z: value(b) }
@@ -146,20 +145,20 @@ fn bright(stage: &Stage, tiles: &[Tile]) -> Option<Glow> {
                     let tile = &tiles[y / TILE * across + x / TILE];
                     let at = (y % TILE) * TILE + x % TILE;
                     let [cr, cg, cb] = tile.rgb.each_ref().map(|p| {
-                        let v = F::new(std::array::from_fn(|i| p[at + i])) * F::splat(grade.exposure);
-                        v.fast_max(F::ZERO).fast_min(F::splat(LIMIT))
+                        let v = F::new(std::array::from_fn(|i| p[at + i])) * splat(grade.exposure);
+                        v.fast_max(F::ZERO).fast_min(splat(LIMIT))
                     });
                     let most = cr.fast_max(cg).fast_max(cb);
-                    let over = most - F::splat(grade.bloom_threshold);
-                    let knee = F::splat(KNEE);
+                    let over = most - splat(grade.bloom_threshold);
+                    let knee = splat(KNEE);
                     if !over.simd_gt(-knee).any() {
                         continue;
                     }
                     any.store(true, Ordering::Relaxed);
                     let soft = (over + knee).fast_max(F::ZERO).fast_min(knee + knee);
-                    let share = over.fast_max(soft * soft * F::splat(0.5 / (2.0 * KNEE)));
+                    let share = over.fast_max(soft * soft * splat(0.5 / (2.0 * KNEE)));
                     let share =
-                        (share / most.fast_max(F::splat(1e-6))).as_array().map(|s| s / (side * side) as f32);
+                        (share / most.fast_max(splat(1e-6))).as_array().map(|s| s / (side * side) as f32);
                     for (i, share) in share.into_iter().enumerate().take(w - x) {
                         let to = PAD + ((x + i) >> step);
                         r[to] += cr.as_array()[i] * share;
@@ -196,11 +195,11 @@ pub fn bloom(stage: &Stage, tiles: &[Tile]) -> Option<Glow> {
         let stride = octave.stride();
         for y in 0..octave.height {
             for x in (0..octave.width).step_by(8) {
-                let below = sum.at(x, y) * F::splat(weight);
+                let below = sum.at(x, y) * splat(weight);
                 for (plane, add) in octave.planes.iter_mut().zip([below.x, below.y, below.z]) {
                     let to = &mut plane[y * stride + PAD + x..][..8];
                     let here = F::new(std::array::from_fn(|i| to[i]));
-                    to.copy_from_slice((here * F::splat(own * amount) + add).as_array());
+                    to.copy_from_slice((here * splat(own * amount) + add).as_array());
                 }
             }
         }

@@ -5,7 +5,7 @@
 //! goes in, so a table of it is exact at its entries; 64 entries per octave, joined linearly, stay
 //! within 1e-4 of it.
 
-use crate::math::lanes::{F, V3};
+use crate::math::lanes::{F, V3, splat};
 use crate::math::scalar::{pow, srgb_encode};
 use crate::scene::Grade;
 use glam::Vec3;
@@ -58,7 +58,7 @@ impl Display {
 #[inline(never)]
 fn lookup(curve: &[f32], x: F) -> F {
     // fast_max takes its second operand if the first is NaN.
-    let x = x.fast_max(F::splat(f32::from_bits(FIRST))).fast_min(F::splat(63.999_99));
+    let x = x.fast_max(splat(f32::from_bits(FIRST))).fast_min(splat(63.999_99));
     let shift = 23 - FINE;
     let bits = x.to_bits().to_array();
     let at = bits.map(|b| (b - FIRST) >> shift);

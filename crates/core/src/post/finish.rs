@@ -5,7 +5,7 @@
 
 use super::bloom::{Glow, bloom};
 use crate::math::hash::{hash_x8, unit_x8};
-use crate::math::lanes::{F, LANE_INDEX, U, V3};
+use crate::math::lanes::{F, LANE_INDEX, V3, splat, splat_u};
 use crate::math::lanes_fn::pow;
 use crate::parallel;
 use crate::render::Stage;
@@ -52,7 +52,7 @@ fn finish_row(
         let [r, g, b] = &tile.rgb;
         let mut linear = V3 { x: lanes(r), y: lanes(g), z: lanes(b) };
         if let Some(glow) = glow {
-            linear += glow.at(x + base * 8, y) * F::splat(1.0 / grade.exposure);
+            linear += glow.at(x + base * 8, y) * splat(1.0 / grade.exposure);
         }
         let mut colour = stage.display.map8(linear);
 
@@ -62,18 +62,18 @@ fn finish_row(
                 colour.set_lane(lane, painted);
             }
         }
-        let index = U::splat((x + base * 8) as u32) + LANE_INDEX;
+        let index = splat_u((x + base * 8) as u32) + LANE_INDEX;
         let fx = F::new(std::array::from_fn(|i| ((x + base * 8 + i) as f32 + 0.5) * (2.0 / w) - 1.0));
         if grade.vignette > 0.0 {
-            let r2 = (fx * fx + F::splat(fy * fy)) * F::splat(0.5);
-            colour = colour * (F::ONE - F::splat(grade.vignette) * pow(r2, F::splat(1.2)));
+            let r2 = (fx * fx + splat(fy * fy)) * splat(0.5);
+            colour = colour * (F::ONE - splat(grade.vignette) * pow(r2, splat(1.2)));
         }
-        let pixel = index + U::splat(y as u32 * stage.width);
-        let noise = unit_x8(hash_x8(pixel, n as u32, 0)) - F::splat(0.5);
-        let noise = noise * F::splat(2.0 * grade.grain);
+        let pixel = index + splat_u(y as u32 * stage.width);
+        let noise = unit_x8(hash_x8(pixel, n as u32, 0)) - splat(0.5);
+        let noise = noise * splat(2.0 * grade.grain);
         let byte = |c: F| {
             let c = (c + noise).fast_max(F::ZERO).fast_min(F::ONE);
-            (c * F::splat(255.0) + F::splat(0.5)).trunc_int().to_array()
+            (c * splat(255.0) + splat(0.5)).trunc_int().to_array()
         };
         let (r, g, b) = (byte(colour.x), byte(colour.y), byte(colour.z));
         for (lane, p) in out.iter_mut().enumerate() {

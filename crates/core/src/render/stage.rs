@@ -1,7 +1,7 @@
 //! A scene made ready for one frame: what every ray asks for, computed once.
 
 use crate::cull::{Dop, Shaft, View, dops, shafts};
-use crate::math::lanes::{F, V3};
+use crate::math::lanes::{F, V3, splat};
 use crate::post::Display;
 use crate::quality::{Quality, Rung};
 use crate::scene::Scene;
@@ -89,16 +89,16 @@ impl<'a> Stage<'a> {
 
     /// Unit direction of the ray through a position in the picture.
     pub fn direction(&self, x: f32, y: f32) -> Vec3 {
-        self.directions(F::splat(x), F::splat(y)).lane(0)
+        self.directions(splat(x), splat(y)).lane(0)
     }
 
     /// [`Stage::direction`] for eight positions.
     #[inline(never)]
     pub fn directions(&self, x: F, y: F) -> V3 {
         let [right, up, forward] = self.view.world_from_view.to_cols_array_2d().map(|c| V3::splat(c.into()));
-        let pixel = F::splat(self.pixel);
-        let x = (x - F::splat(self.width as f32 * 0.5)) * pixel;
-        let y = (F::splat(self.height as f32 * 0.5) - y) * pixel;
+        let pixel = splat(self.pixel);
+        let x = (x - splat(self.width as f32 * 0.5)) * pixel;
+        let y = (splat(self.height as f32 * 0.5) - y) * pixel;
         (right * x + up * y + forward).normalize()
     }
 

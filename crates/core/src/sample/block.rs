@@ -1,6 +1,6 @@
 //! What is known of traced samples, in blocks of eight: a packet's results are stored as vectors.
 
-use crate::math::lanes::{F, U, V3};
+use crate::math::lanes::{F, U, V3, splat};
 use crate::shade::Codes;
 use glam::Vec3;
 
@@ -107,6 +107,6 @@ impl<'a> Sample<'a> {
         self.block.codes[lamp].as_array()[self.lane]
     }
     pub fn codes(self) -> Codes {
-        self.block.codes.map(|c| F::splat(c.as_array()[self.lane]))
+        self.block.codes.map(|c| splat(c.as_array()[self.lane]))
     }
 }

@@ -8,7 +8,7 @@ use super::block::Sample;
 use super::refine::{Cell, Corners};
 use super::tile::{Kind, Record, TILE, Tile};
 use crate::counters::{Counter, Counters};
-use crate::math::lanes::{F, V3};
+use crate::math::lanes::{F, V3, splat};
 use crate::quality::Rung;
 use crate::render::Stage;
 use crate::scene::Channel;
@@ -68,7 +68,7 @@ pub(super) fn fill(
         stage.scene.materials[shape.material()].grain > 0.0
     };
     let rung = if equal && !textured { Rung::Colour } else { stage.quality.rung };
-    let scale = F::splat(1.0 / cell.size as f32);
+    let scale = splat(1.0 / cell.size as f32);
     let shift = cell.size.trailing_zeros();
     let patch = match rung {
         Rung::Colour => Patch::of(known, |s| s.colour()),
@@ -85,8 +85,8 @@ pub(super) fn fill(
         let x = F::new(std::array::from_fn(|i| place(i).0 as f32));
         let y = F::new(std::array::from_fn(|i| place(i).1 as f32));
         let between = patch.at(x * scale, y * scale);
-        let px = x + F::splat((corner.0 + cell.x) as f32 + 0.5);
-        let py = y + F::splat((corner.1 + cell.y) as f32 + 0.5);
+        let px = x + splat((corner.0 + cell.x) as f32 + 0.5);
+        let py = y + splat((corner.1 + cell.y) as f32 + 0.5);
         let colour = match rung {
             Rung::Surface => between + known_surface(stage, first, px, py, counters),
             Rung::Light if textured => {
@@ -115,17 +115,17 @@ pub(super) fn fill(
 fn meet(stage: &Stage, first: Sample, px: F, py: F) -> (Rays8, F) {
     let rays = Rays8 { origin: V3::splat(stage.scene.camera.position), direction: stage.directions(px, py) };
     if first.id() < 0.0 {
-        return (rays, F::splat(f32::INFINITY));
+        return (rays, splat(f32::INFINITY));
     }
     let (t, _) = stage.scene.shape(first.id() as usize >> 2).span(&rays).first();
-    (rays, t.simd_gt(F::ZERO).select(t, F::splat(first.depth())))
+    (rays, t.simd_gt(F::ZERO).select(t, splat(first.depth())))
 }
 
 /// Albedo of the known shape at pixels.
 fn albedo(stage: &Stage, first: Sample, px: F, py: F, counters: &mut Counters) -> V3 {
     counters.add(Counter::KnownSurfaces, 8);
     let (rays, t) = meet(stage, first, px, py);
-    let s = surface(stage.scene, &rays, t, F::splat(first.id()), F::splat(stage.pixel));
+    let s = surface(stage.scene, &rays, t, splat(first.id()), splat(stage.pixel));
     s.colour(Channel::Colour)
 }
 
@@ -135,14 +135,14 @@ fn albedo(stage: &Stage, first: Sample, px: F, py: F, counters: &mut Counters) -
 fn known_surface(stage: &Stage, first: Sample, px: F, py: F, counters: &mut Counters) -> V3 {
     counters.add(Counter::KnownSurfaces, 8);
     let (rays, t) = meet(stage, first, px, py);
-    let spread = F::splat(stage.pixel);
+    let spread = splat(stage.pixel);
     let light = if first.id() <= NONE {
         shade::background(&stage.scene.background, &rays, spread).0
     } else {
-        let s = surface(stage.scene, &rays, t, F::splat(first.id()), spread);
+        let s = surface(stage.scene, &rays, t, splat(first.id()), spread);
         let mut codes = first.codes();
         let view = -rays.direction;
-        let all = F::ZERO.simd_gt(F::splat(-1.0));
+        let all = F::ZERO.simd_gt(splat(-1.0));
         let lit = shade::direct(stage, &s, view, all, Visibility::Known, &mut codes, counters);
         let local = shade::local(stage, &s, &shade::split(&s, rays.direction), lit);
         local.irradiance * s.colour(Channel::Colour) + local.rest

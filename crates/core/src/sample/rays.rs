@@ -1,6 +1,6 @@
 //! Lists of rays on their way to samples, in packets of eight.
 
-use crate::math::lanes::{F, V3};
+use crate::math::lanes::{F, V3, splat};
 use crate::trace::Rays8;
 
 /// Eight rays and what their light is for.
@@ -43,7 +43,7 @@ impl RayList {
             self.packets.push(Packet {
                 rays: Rays8 { origin: V3::splat(origin), direction: V3::splat(direction) },
                 weight: V3::splat(weight),
-                spread: F::splat(spread),
+                spread: splat(spread),
                 samples: [sample; 8],
             });
         } else if let Some(packet) = self.packets.last_mut() {

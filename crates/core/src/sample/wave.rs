@@ -9,7 +9,7 @@ use super::rays::{Packet, RayList};
 use crate::counters::{Counter, Counters};
 use crate::cull::{Region, occluders};
 use crate::math::hash::mix_x8;
-use crate::math::lanes::{F, U, V3};
+use crate::math::lanes::{F, U, V3, splat, splat_u};
 use crate::render::Stage;
 use crate::scene::Channel;
 use crate::shade::{self, Codes, MAX_LAMPS, Visibility};
@@ -91,7 +91,7 @@ pub fn trace(stage: &Stage, scratch: &mut Scratch, positions: &[Position], candi
         scratch.rays.packets.push(Packet {
             rays: Rays8 { origin: V3::splat(stage.scene.camera.position), direction: stage.directions(x, y) },
             weight: V3::splat(Vec3::ONE),
-            spread: F::splat(stage.pixel),
+            spread: splat(stage.pixel),
             samples: std::array::from_fn(|i| (8 * (first + k) + i) as u32),
         });
     }
@@ -213,8 +213,8 @@ fn shade_packet(
     }
     if level > 0 {
         // What a rough mirror sees far off dissolves into the mean light around it.
-        let width = spread * hit.t - F::splat(BLUR_FROM);
-        let blur = (width * F::splat(BLUR_GAIN)).fast_max(F::ZERO).fast_min(F::ONE) & solid;
+        let width = spread * hit.t - splat(BLUR_FROM);
+        let blur = (width * splat(BLUR_GAIN)).fast_max(F::ZERO).fast_min(F::ONE) & solid;
         light += weight * shade::ambient(stage, rays.direction) * blur;
         weight = weight * (F::ONE - blur);
     }
@@ -239,7 +239,7 @@ fn shade_packet(
     }
 
     let t = solid.select(hit.t, F::ZERO);
-    let s = surface(scene, rays, t, solid.select(hit.id, F::splat(NONE)), spread);
+    let s = surface(scene, rays, t, solid.select(hit.id, splat(NONE)), spread);
     let view = -rays.direction;
     let trace = Visibility::Trace(shadows);
     let lit = shade::direct(stage, &s, view, solid, trace, &mut found.codes, counters);
@@ -255,7 +255,7 @@ fn shade_packet(
     let facing = V3::select(s.inside, -s.outward, s.outward);
     let offset = facing * s.clearance;
     let m = s.value(Channel::Roughness);
-    found.spread = spread + m * m * F::splat(6.0);
+    found.spread = spread + m * m * splat(6.0);
     found.mirrored = Rays8 { origin: s.point + offset, direction: split.mirrored };
     found.mirrored_weight = seen * split.reflectance * s.value(Channel::Reflection);
     let entering = seen & !split.total;
@@ -285,7 +285,7 @@ impl Found {
             albedo: self.albedo,
             display: V3::ZERO,
             surface: hash,
-            signature: U::splat(0),
+            signature: splat_u(0),
             id: self.id,
             depth: self.depth * packet.rays.direction.dot(V3::splat(stage.forward())),
             point: self.point,
@@ -297,7 +297,7 @@ impl Found {
     /// Appends the rays that go on, if what they may add is worth it.
     #[inline(never)]
     fn spawn(&self, stage: &Stage, owners: &[u32], next: &mut RayList, counters: &mut Counters) {
-        let cutoff = F::splat(stage.quality.cutoff / stage.scene.grade.exposure);
+        let cutoff = splat(stage.quality.cutoff / stage.scene.grade.exposure);
         let worth = |w: V3| w.x.fast_max(w.y).fast_max(w.z).simd_gt(cutoff).to_bitmask();
         let (mirrors, enters) = (worth(self.mirrored_weight), worth(self.refracted_weight));
         for (lane, &sample) in owners.iter().enumerate() {

@@ -1,6 +1,6 @@
 //! The sky behind everything, discs in it, and the shining rectangles that mirrors see.
 
-use crate::math::lanes::{F, V3};
+use crate::math::lanes::{F, V3, splat};
 use crate::math::lanes_fn::exp;
 use crate::scene::{Background, Emitter};
 use crate::trace::{NONE, Rays8};
@@ -10,8 +10,8 @@ use crate::trace::{NONE, Rays8};
 /// `w` is the filter's width; 0 gives the hard edge.
 #[inline(always)]
 fn covered(x: F, half: F, w: F) -> F {
-    let w = w.fast_max(F::splat(1e-6));
-    let (a, b) = (x - w * F::splat(0.5), x + w * F::splat(0.5));
+    let w = w.fast_max(splat(1e-6));
+    let (a, b) = (x - w * splat(0.5), x + w * splat(0.5));
     ((b.fast_min(half) - a.fast_max(-half)) / w).fast_max(F::ZERO).fast_min(F::ONE)
 }
 
@@ -30,26 +30,26 @@ pub fn background(sky: &Background, rays: &Rays8, spread: F) -> (V3, F) {
             continue;
         }
         let before = &sky.stops[i - 1];
-        let x = (d.y - F::splat(before.y)) * F::splat(1.0 / (stop.y - before.y));
+        let x = (d.y - splat(before.y)) * splat(1.0 / (stop.y - before.y));
         colour += (at - V3::splat(before.colour)) * x.fast_max(F::ZERO).fast_min(F::ONE);
     }
     for glow in &sky.glows {
-        let x = (d.dot(V3::splat(glow.direction)) - F::ONE) * F::splat(glow.sharpness);
+        let x = (d.dot(V3::splat(glow.direction)) - F::ONE) * splat(glow.sharpness);
         colour += V3::splat(glow.colour) * exp(x);
     }
-    let mut id = F::splat(NONE);
+    let mut id = splat(NONE);
     for (k, disc) in sky.discs.iter().enumerate().rev() {
         let c = V3::splat(disc.centre);
-        let r = F::splat(disc.radius);
+        let r = splat(disc.radius);
         let t = (c.z - rays.origin.z) / d.z;
         let (x, y) = (rays.origin.x + d.x * t - c.x, rays.origin.y + d.y * t - c.y);
         let share = covered((x * x + y * y).sqrt(), r, spread * t);
         let share = t.simd_gt(F::ZERO).select(share, F::ZERO);
-        let height = y / (r + r) + F::splat(0.5);
+        let height = y / (r + r) + splat(0.5);
         let low = V3::splat(disc.low);
         let shine = low + (V3::splat(disc.high) - low) * height.fast_max(F::ZERO).fast_min(F::ONE);
         colour += (shine - colour) * share;
-        id = share.simd_gt(F::splat(0.5)).select(F::splat(NONE - 1.0 - k as f32), id);
+        id = share.simd_gt(splat(0.5)).select(splat(NONE - 1.0 - k as f32), id);
     }
     (colour, id)
 }
@@ -74,12 +74,12 @@ pub fn emitters(list: &[Emitter], rays: &Rays8, spread: F, t: F) -> (V3, F, F) {
         }
         let p = rays.direction * at - c;
         let w = spread * at;
-        let share = covered(p.dot(V3::splat(e.u)), F::splat(e.half[0]), w)
-            * covered(p.dot(V3::splat(e.v)), F::splat(e.half[1]), w);
+        let share = covered(p.dot(V3::splat(e.u)), splat(e.half[0]), w)
+            * covered(p.dot(V3::splat(e.v)), splat(e.half[1]), w);
         let share = front.select(share, F::ZERO);
         light += V3::splat(e.radiance) * (share * open);
         open *= F::ONE - share;
-        seen += share.simd_gt(F::splat(0.5)).select(F::splat((1 << k.min(20)) as f32), F::ZERO);
+        seen += share.simd_gt(splat(0.5)).select(splat((1 << k.min(20)) as f32), F::ZERO);
     }
     (light, F::ONE - open, seen)
 }

@@ -6,7 +6,7 @@
 use super::fresnel::{Split, schlick};
 use super::lamps::Lamp;
 use crate::counters::{Counter, Counters};
-use crate::math::lanes::{F, V3};
+use crate::math::lanes::{F, V3, splat};
 use crate::math::lanes_fn::{exp, pow};
 use crate::render::Stage;
 use crate::scene::{Channel, Shading};
@@ -46,7 +46,7 @@ pub struct Local {
 /// Mean light from the half space around a unit direction, by its height.
 pub fn ambient(stage: &Stage, direction: V3) -> V3 {
     let [below, above] = stage.scene.ambient;
-    let x = direction.y * F::splat(0.5) + F::splat(0.5);
+    let x = direction.y * splat(0.5) + splat(0.5);
     V3::splat(below) + V3::splat(above - below) * x
 }
 
@@ -75,16 +75,16 @@ fn phong(s: &Surface, l: V3, v: V3, n_l: F) -> V3 {
 fn cook_torrance(s: &Surface, l: V3, v: V3, n_l: F) -> V3 {
     let n = s.normal;
     let h = (l + v).normalize();
-    let n_v = n.dot(v).fast_max(F::splat(1e-4));
-    let n_h = n.dot(h).fast_max(F::splat(1e-4));
-    let v_h = v.dot(h).fast_max(F::splat(1e-4));
-    let m = s.value(Channel::Roughness).fast_max(F::splat(1e-3));
+    let n_v = n.dot(v).fast_max(splat(1e-4));
+    let n_h = n.dot(h).fast_max(splat(1e-4));
+    let v_h = v.dot(h).fast_max(splat(1e-4));
+    let m = s.value(Channel::Roughness).fast_max(splat(1e-3));
     let c2 = n_h * n_h;
     let m2 = m * m;
     let d = exp(-(n.cross(h).dot(n.cross(h)) / (c2 * m2))) / (m2 * c2 * c2);
     let two_c = n_h + n_h;
     let g = (F::ONE / n_v).fast_min(two_c / v_h).fast_min(two_c * n_l / (v_h * n_v));
-    schlick(s.colour(Channel::F0), v_h) * s.colour(Channel::Specular) * (d * g * F::splat(0.25))
+    schlick(s.colour(Channel::F0), v_h) * s.colour(Channel::Specular) * (d * g * splat(0.25))
 }
 
 /// Direct light at surfaces seen from the unit direction `v`, in lanes `active`.
@@ -117,7 +117,7 @@ pub fn direct(
     let start = s.point + facing * s.clearance;
     for (k, lamp) in stage.lamps.iter().enumerate() {
         let to_lamp = V3::splat(lamp.position) - start;
-        let d2 = to_lamp.dot(to_lamp).fast_max(F::splat(1e-8));
+        let d2 = to_lamp.dot(to_lamp).fast_max(splat(1e-8));
         let l = to_lamp * (F::ONE / d2.sqrt());
         let n_l = s.normal.dot(l);
         let reach = lamp.lobe(-l);
@@ -134,7 +134,7 @@ pub fn direct(
             }
         }
         let code = codes.get(k).copied().unwrap_or(zero);
-        let lit = wanted & !code.simd_eq(F::splat(BLOCKED));
+        let lit = wanted & !code.simd_eq(splat(BLOCKED));
         if !lit.any() {
             continue;
         }

@@ -4,7 +4,7 @@
 //! keeps its digits near the critical angle; total internal reflection (ηs >= 1) is a case of its
 //! own with reflectance 1. Schlick 1994; inside the denser body with the outer angle.
 
-use crate::math::lanes::{F, V3};
+use crate::math::lanes::{F, V3, splat};
 use crate::scene::Channel;
 use crate::trace::Surface;
 
@@ -55,7 +55,7 @@ pub fn split(s: &Surface, d: V3) -> Split {
     let facing = V3::select(s.inside, -s.outward, s.outward);
     let mirrored = d + n * (cos + cos);
     let height = mirrored.dot(facing);
-    let least = F::splat(0.01);
+    let least = splat(0.01);
     let low = height.simd_lt(least);
     let lifted = (mirrored + facing * (least - height)).normalize();
     Split { reflectance, mirrored: V3::select(low, lifted, mirrored), refracted, total }

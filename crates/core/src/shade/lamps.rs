@@ -1,6 +1,6 @@
 //! Lamps as shading sees them: points, spots and shining rectangles in one form.
 
-use crate::math::lanes::{F, V3};
+use crate::math::lanes::{F, V3, splat};
 use crate::scene::{LightKind, Material, Scene};
 use glam::Vec3;
 use std::f32::consts::PI;
@@ -65,7 +65,7 @@ impl Lamp {
     #[inline(always)]
     pub fn lobe(&self, d: V3) -> F {
         let c = d.dot(V3::splat(self.axis));
-        let x = ((c - F::splat(self.outer)) * F::splat(self.gain)).fast_max(F::ZERO).fast_min(F::ONE);
-        if self.smooth { x * x * (F::splat(3.0) - (x + x)) } else { x }
+        let x = ((c - splat(self.outer)) * splat(self.gain)).fast_max(F::ZERO).fast_min(F::ONE);
+        if self.smooth { x * x * (splat(3.0) - (x + x)) } else { x }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::Rays8;
 use crate::counters::{Counter, Counters};
-use crate::math::lanes::F;
+use crate::math::lanes::{F, splat};
 use crate::scene::Scene;
 
 /// Hit id of a lane that hit nothing.
@@ -24,7 +24,7 @@ pub struct Hits {
 /// only leave out shapes that no lane can hit.
 #[inline(never)]
 pub fn nearest(scene: &Scene, rays: &Rays8, candidates: u64, counters: &mut Counters) -> Hits {
-    let mut best = Hits { t: F::splat(f32::INFINITY), id: F::splat(NONE) };
+    let mut best = Hits { t: splat(f32::INFINITY), id: splat(NONE) };
     for index in 0..scene.shape_count() {
         if candidates >> (index & 63) & 1 == 0 {
             continue;
@@ -33,7 +33,7 @@ pub fn nearest(scene: &Scene, rays: &Rays8, candidates: u64, counters: &mut Coun
         let (t, part) = scene.shape(index).span(rays).first();
         let closer = t.simd_gt(F::ZERO) & t.simd_lt(best.t);
         best.t = closer.select(t, best.t);
-        best.id = closer.select(F::splat(index as f32 * 4.0) + part, best.id);
+        best.id = closer.select(splat(index as f32 * 4.0) + part, best.id);
     }
     best
 }

@@ -19,7 +19,7 @@ pub use sphere::sphere;
 pub use surface::{Surface, surface};
 pub use triangle::triangle;
 
-use crate::math::lanes::{F, V3};
+use crate::math::lanes::{F, V3, splat};
 use crate::scene::{Cone, Cylinder, Plane, Scene, Sphere, Triangle};
 
 /// Eight rays. Directions need not be unit vectors; distances along a ray are in lengths of its
@@ -57,7 +57,7 @@ impl Span {
     /// A crossing of an open shape at `t`, or a miss where `hit` is not set.
     #[inline(always)]
     pub fn single(t: F, hit: F) -> Self {
-        let t = hit.select(t, F::splat(-1.0));
+        let t = hit.select(t, splat(-1.0));
         Self { enter: t, exit: t, enter_part: F::ZERO, exit_part: F::ZERO }
     }
 
@@ -77,7 +77,7 @@ impl Rays8 {
         let f = self.origin - V3::splat(centre);
         let d = self.direction;
         let (ff, b) = (f.dot(f), f.dot(d));
-        let reach = F::splat(radius * radius * 1.0001) + ff * F::splat(2e-6);
+        let reach = splat(radius * radius * 1.0001) + ff * splat(2e-6);
         (ff - b * b / d.dot(d)).simd_le(reach).any()
     }
 }

@@ -2,7 +2,7 @@
 
 use super::Rays8;
 use crate::counters::{Counter, Counters};
-use crate::math::lanes::F;
+use crate::math::lanes::{F, splat};
 use crate::scene::Scene;
 
 /// Visibility code of a lamp that an opaque shape hides.
@@ -25,7 +25,7 @@ pub fn occlusion(
     candidates: u64,
     counters: &mut Counters,
 ) -> F {
-    let (zero, end) = (F::ZERO, F::splat(END));
+    let (zero, end) = (F::ZERO, splat(END));
     let mut code = F::ZERO;
     let mut open = wanted;
     for (index, &bit) in bits.iter().enumerate() {
@@ -36,7 +36,7 @@ pub fn occlusion(
         let span = scene.shape(index).span(rays);
         if bit > 0.0 {
             let crossed = span.exit.simd_gt(zero) & span.enter.simd_lt(end);
-            code += crossed & F::splat(bit);
+            code += crossed & splat(bit);
         } else {
             let within = |t: F| t.simd_gt(zero) & t.simd_lt(end);
             let hidden = within(span.enter) | within(span.exit);
@@ -46,5 +46,5 @@ pub fn occlusion(
             }
         }
     }
-    (wanted & !open).select(F::splat(BLOCKED), code)
+    (wanted & !open).select(splat(BLOCKED), code)
 }

@@ -1,7 +1,7 @@
 //! Ray and plane: t = n·(p - o) / (n·d), within the reach of p; a ray in the plane does not hit it.
 
 use super::{Rays8, Span};
-use crate::math::lanes::{F, V3};
+use crate::math::lanes::{F, V3, splat};
 use crate::scene::Plane;
 
 /// Where `rays` cross the plane.
@@ -11,6 +11,6 @@ pub fn plane(rays: &Rays8, s: &Plane) -> Span {
     let to_point = V3::splat(s.point) - rays.origin;
     let t = n.dot(to_point) / along;
     let off = rays.direction * t - to_point;
-    let within = off.dot(off).simd_le(F::splat(s.reach * s.reach));
+    let within = off.dot(off).simd_le(splat(s.reach * s.reach));
     Span::single(t, along.simd_ne(F::ZERO) & within)
 }

@@ -8,7 +8,7 @@
 //! q-form is Kahan's.
 
 use super::{Rays8, Span};
-use crate::math::lanes::{F, V3, copysign};
+use crate::math::lanes::{F, V3, copysign, splat};
 use crate::scene::{Cone, Cylinder};
 
 /// What both shapes know of a ray: its parts along the axis and across it.
@@ -47,8 +47,8 @@ fn roots(a: F, b: F, c: F, disc: F) -> (F, F) {
 ///
 /// An end without a cap is passed through: the far crossing counts then, if it is not open too.
 fn clip(ray: &Axial, side: (F, F), hit: F, range: [f32; 2], caps: [bool; 2]) -> Span {
-    let (zero, inf) = (F::ZERO, F::splat(f32::INFINITY));
-    let (lo, hi) = (F::splat(range[0]), F::splat(range[1]));
+    let (zero, inf) = (F::ZERO, splat(f32::INFINITY));
+    let (lo, hi) = (splat(range[0]), splat(range[1]));
     if !hit.any() {
         return Span::MISS;
     }
@@ -64,7 +64,7 @@ fn clip(ray: &Axial, side: (F, F), hit: F, range: [f32; 2], caps: [bool; 2]) -> 
     let out_side = side.1.simd_le(slab_exit);
     let enter = by_side.select(side.0, slab_enter);
     let exit = out_side.select(side.1, slab_exit);
-    let (near, far) = (F::splat(1.0), F::splat(2.0));
+    let (near, far) = (splat(1.0), splat(2.0));
     let enter_part = by_side.select(zero, forward.select(near, far));
     let exit_part = out_side.select(zero, forward.select(far, near));
 
@@ -78,7 +78,7 @@ fn clip(ray: &Axial, side: (F, F), hit: F, range: [f32; 2], caps: [bool; 2]) -> 
         gap
     };
     let hit = hit & enter.simd_le(exit);
-    let miss = F::splat(-1.0);
+    let miss = splat(-1.0);
     let exit = (hit & !open(exit_part)).select(exit, miss);
     let pass = open(enter_part) | !hit;
     Span { enter: pass.select(exit, enter), exit, enter_part: pass.select(exit_part, enter_part), exit_part }
@@ -93,13 +93,13 @@ pub fn cylinder(rays: &Rays8, s: &Cylinder) -> Span {
         return Span::MISS;
     }
     let ray = Axial::new(rays, s.base, s.axis);
-    let r = F::splat(s.radius);
+    let r = splat(s.radius);
     let (n, m) = (ray.n.length(), ray.m.length());
     let disc = (r * n - ray.cross) * (r * n + ray.cross);
     let c = (m - r) * (m + r);
     let (x, y) = roots(n * n, ray.n.dot(ray.m), c, disc);
     let parallel = n.simd_eq(F::ZERO);
-    let inf = F::splat(f32::INFINITY);
+    let inf = splat(f32::INFINITY);
     let side = (parallel.select(-inf, x.fast_min(y)), parallel.select(inf, x.fast_max(y)));
     let hit = parallel.select(c.simd_le(F::ZERO), disc.simd_ge(F::ZERO));
     let range = if s.length < f32::INFINITY { [0.0, s.length] } else { [-s.length, s.length] };
@@ -117,8 +117,8 @@ pub fn cone(rays: &Rays8, s: &Cone) -> Span {
         }
     }
     let ray = Axial::new(rays, s.apex, s.axis);
-    let k = F::splat(s.slope);
-    let (zero, inf) = (F::ZERO, F::splat(f32::INFINITY));
+    let k = splat(s.slope);
+    let (zero, inf) = (F::ZERO, splat(f32::INFINITY));
     let (n, m) = (ray.n.length(), ray.m.length());
     let (kd, kf) = (k * ray.direction, k * ray.origin);
     let a = (n - kd.abs()) * (n + kd.abs());
@@ -135,7 +135,7 @@ pub fn cone(rays: &Rays8, s: &Cone) -> Span {
     let up = ray.direction.simd_gt(zero);
     let parallel = a.simd_eq(zero);
     let own = parallel.select(y, up.select(hi, lo));
-    let middle = (lo + hi) * F::splat(0.5);
+    let middle = (lo + hi) * splat(0.5);
     let height = ray.origin + flat.select(middle, own) * ray.direction;
     let enter = flat.select(lo, up.select(own, -inf));
     let exit = flat.select(hi, up.select(inf, own));

@@ -5,14 +5,14 @@
 //! Haines, Günther and Akenine-Möller, Ray Tracing Gems ch. 7.
 
 use super::{Rays8, Span};
-use crate::math::lanes::{F, V3, copysign};
+use crate::math::lanes::{F, V3, copysign, splat};
 use crate::scene::Sphere;
 
 /// Where `rays` cross the sphere.
 pub fn sphere(rays: &Rays8, s: &Sphere) -> Span {
     let d = rays.direction;
     let f = rays.origin - V3::splat(s.centre);
-    let r = F::splat(s.radius);
+    let r = splat(s.radius);
     let a = d.dot(d);
     let b = -f.dot(d);
     let l = f + d * (b / a);
@@ -24,7 +24,7 @@ pub fn sphere(rays: &Rays8, s: &Sphere) -> Span {
     let other = q.simd_eq(F::ZERO).select(F::ZERO, c / q);
     let behind = b.simd_lt(F::ZERO);
     let hit = disc.simd_ge(F::ZERO);
-    let miss = F::splat(-1.0);
+    let miss = splat(-1.0);
     Span {
         enter: hit.select(behind.select(one, other), miss),
         exit: hit.select(behind.select(other, one), miss),

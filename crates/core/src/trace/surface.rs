@@ -6,7 +6,7 @@
 //! Gems ch. 6; PBRT 4th ed. §6.8.6).
 
 use super::{Rays8, Shape};
-use crate::math::lanes::{F, V3};
+use crate::math::lanes::{F, V3, splat};
 use crate::math::noise::value_noise;
 use crate::scene::{Channel, Material, Scene, Sphere};
 
@@ -58,12 +58,12 @@ fn onto_plane(p: V3, point: glam::Vec3, n: V3) -> Located {
 fn blended(scene: &Scene, own: &Sphere, p: V3, n: V3) -> V3 {
     let mut normal = n;
     if own.blend > 0.0 {
-        let k = F::splat(own.blend);
+        let k = splat(own.blend);
         for other in scene.spheres.iter().filter(|o| o.blend > 0.0 && !std::ptr::eq(*o, own)) {
             let v = p - V3::splat(other.centre);
             let len = v.length();
-            let distance = (len - F::splat(other.radius)).abs();
-            let h = (k - distance).fast_max(F::ZERO) / k * F::splat(0.5);
+            let distance = (len - splat(other.radius)).abs();
+            let h = (k - distance).fast_max(F::ZERO) / k * splat(0.5);
             normal = normal + (v * (F::ONE / len) - normal) * h;
         }
         normal = normal.normalize();
@@ -77,7 +77,7 @@ fn locate(scene: &Scene, shape: Shape, part: u32, p: V3) -> Located {
     match shape {
         Shape::Sphere(s) => {
             let c = V3::splat(s.centre);
-            let r = F::splat(s.radius);
+            let r = splat(s.radius);
             let n = (p - c).normalize();
             let p = c + n * r;
             (p, n, blended(scene, s, p, n), max_abs(c) + r)
@@ -116,11 +116,11 @@ fn round(
     // On the axis, at a cone's apex, the side has no normal: there it points back along the axis.
     let on_axis = len.simd_eq(F::ZERO);
     let radial = V3::select(on_axis, -a, radial * (F::ONE / on_axis.select(F::ONE, len)));
-    let slope = F::splat(profile.1);
+    let slope = splat(profile.1);
     let scale = (F::ONE + slope * slope).sqrt();
     let n = (radial - a * slope) * (F::ONE / scale);
-    let off = (len - (F::splat(profile.0) + slope * height)) / scale;
-    (p - n * off, n, n, max_abs(reference) + F::splat(profile.0))
+    let off = (len - (splat(profile.0) + slope * height)) / scale;
+    (p - n * off, n, n, max_abs(reference) + splat(profile.0))
 }
 
 /// Locates the surfaces that `rays` hit at distances `t`; ids as in [`super::Hits`]. `spread` is
@@ -142,7 +142,7 @@ pub fn surface(scene: &Scene, rays: &Rays8, t: F, id: F, spread: F) -> Surface {
     let mut todo = id.simd_ge(F::ZERO).to_bitmask();
     while todo != 0 {
         let lane_id = ids[todo.trailing_zeros() as usize];
-        let mask = id.simd_eq(F::splat(lane_id));
+        let mask = id.simd_eq(splat(lane_id));
         todo &= !mask.to_bitmask();
         let (index, part) = (lane_id as usize >> 2, lane_id as u32 & 3);
         let shape = scene.shape(index);
@@ -150,11 +150,11 @@ pub fn surface(scene: &Scene, rays: &Rays8, t: F, id: F, spread: F) -> Surface {
         s.point = V3::select(mask, point, s.point);
         s.outward = V3::select(mask, outward, s.outward);
         s.normal = V3::select(mask, normal, s.normal);
-        let scale = scale.fast_max(max_abs(point)).fast_max(F::splat(1e-30));
-        s.clearance = mask.select(scale * F::splat(4.0 / 8_388_608.0), s.clearance);
+        let scale = scale.fast_max(max_abs(point)).fast_max(splat(1e-30));
+        s.clearance = mask.select(scale * splat(4.0 / 8_388_608.0), s.clearance);
         let channels = scene.materials[shape.material()].channels();
         for (lane, &value) in s.material.iter_mut().zip(&channels) {
-            *lane = mask.select(F::splat(value), *lane);
+            *lane = mask.select(splat(value), *lane);
         }
     }
     s.inside = s.outward.dot(rays.direction).simd_gt(F::ZERO);
@@ -171,7 +171,7 @@ fn grain(s: &mut Surface, width: F) {
         return;
     }
     let scale = s.value(Channel::GrainScale);
-    let fade = (F::splat(2.0) - width * scale * F::splat(2.0)).fast_max(F::ZERO).fast_min(F::ONE);
+    let fade = (splat(2.0) - width * scale * splat(2.0)).fast_max(F::ZERO).fast_min(F::ONE);
     let factor = F::ONE + amount * fade * value_noise(s.point * scale);
     for channel in 0..3 {
         s.material[channel] *= factor;

@@ -9,7 +9,7 @@
 //! (2005), and Data Compression Explained, section 4.3.2.
 
 /// The largest stretched value, either way.
-pub const LIMIT: f32 = 11.5;
+const LIMIT: f32 = 11.5;
 
 /// The probability whose logarithmic odds are `x`: `1 / (1 + exp(-x))`.
 ///

@@ -4,7 +4,7 @@
 //! the last instructions that the [`Walker`] knows. Under the hash of what it sees and of the
 //! bits of the byte so far it keeps a [`Slot`], which gives two opinions: how often the bit was a
 //! one there, and, by a table that learns, what the pattern of ones and zeros there usually meant.
-//! A match model follows the longest repetition. Three mixers, each with a set of weights chosen
+//! A match model follows the longest repetition. Four mixers, each with a set of weights chosen
 //! by another selector, add the opinions up; their mean is corrected by two tables that learn how
 //! far such a prediction is to be trusted after this byte.
 //!
@@ -13,15 +13,15 @@
 //! Source: Matt Mahoney's paq8 and lpaq1 for the architecture; Fabian Giesen's kkrunchy and Rune
 //! Stubbe's and Aske Christensen's Crinkler for contexts that follow instructions.
 
-use super::logistic::{LIMIT, Stretch, Vector, squash};
+use super::logistic::{Stretch, Vector, squash};
 use super::x86::{Part, Walker, mix};
 
 /// Number of contexts.
-pub const CONTEXTS: usize = 22;
+pub const CONTEXTS: usize = 24;
 /// Opinions, in fours: two for each context, then the match model's and a constant.
 const FOURS: usize = CONTEXTS / 2 + 1;
 /// Mixers.
-const MIXERS: usize = 3;
+const MIXERS: usize = 4;
 /// Sets of weights of each mixer.
 const SETS: usize = 2048;
 /// Rows of sixteen slots for each context, as a power of two.
@@ -30,10 +30,10 @@ const ROW_BITS: u32 = 14;
 const MATCH_BITS: u32 = 16;
 
 /// Weight of each opinion at the start.
-const FIRST_WEIGHT: f32 = 0.07;
+const FIRST_WEIGHT: f32 = 0.05;
 /// Learning rate of the mixers in the long run, and what is added to it at the start.
 const RATE: f32 = 0.0035;
-const EARLY_RATE: f32 = 0.028;
+const EARLY_RATE: f32 = 0.02;
 /// A slot's probability stops adapting faster than `1 / SETTLED` after that many bits.
 const SETTLED: u8 = 60;
 
@@ -69,8 +69,10 @@ pub struct Model {
     match_length: usize,
     /// The byte that the match expects, behind a leading one; 0 without one or once it failed.
     expected: u32,
-    /// Sets of weights, by mixer: the parts that stand for a whole byte, and those in use.
+    /// What chooses the mixers' sets of weights as far as it stands for a whole byte: the part of
+    /// the instruction, nothing, the opcode, and the byte before the last.
     selectors: [u32; MIXERS],
+    /// The sets in use.
     sets: [u32; MIXERS],
     /// What each mixer said.
     mixed: [f32; MIXERS],
@@ -173,8 +175,8 @@ impl Model {
         self.opinions.numbers_mut()[CONTEXTS / 2] = [matched, 0.4, 0.0, 0.0];
 
         let agreed = (self.match_length.min(15) as u32 + 1).ilog2();
-        let [state, _, opcode] = self.selectors;
-        self.sets = [state * 8 + bits, partial | agreed << 8, opcode];
+        let [state, _, opcode, before] = self.selectors;
+        self.sets = [state * 8 + bits, partial | agreed << 8, opcode, before];
         let mut sum = 0.0;
         for ((mixed, set), weights) in self.mixed.iter_mut().zip(self.sets).zip(&self.weights) {
             let dot = weights[set as usize & (SETS - 1)].dot(&self.opinions);
@@ -269,13 +271,15 @@ impl Model {
             mix(c4, column),
             mix(c4 << 8 | before4 >> 24, column),
             mix(one, field),
+            mix(walker.modrm & 0xc7, state),
+            mix(mix(walker.modrm & 0xc7, field), state),
             mix(mix(mix(p0, p1), p2), mix(p3, current ^ field)),
         ];
         for (i, (found, seen)) in self.found.iter_mut().zip(seen).enumerate() {
             found.hash = mix(seen, i as u32 + 1);
         }
         let left = u32::from(walker.left.min(7));
-        self.selectors = [walker.part as u32 | left << 3, 0, walker.opcode & 1023];
+        self.selectors = [walker.part as u32 | left << 3, 0, walker.opcode & 1023, last4 >> 8 & 0xff];
     }
 
     /// Keeps to the run that matches what came last, or looks for one.
@@ -317,5 +321,5 @@ fn next_history(history: u8, bit: u32) -> u8 {
     zeros << 5 | ones << 2 | history << 1 & 2 | bit as u8
 }
 
-// Not used by the arithmetic, but a wrong order of magnitude here would be a wrong model.
-const _: () = assert!(LIMIT > 8.0 && Part::Opcode as u8 == 0 && CONTEXTS.is_multiple_of(2));
+// A model of zeros starts with an instruction's first byte, and opinions come in fours.
+const _: () = assert!(Part::Opcode as u8 == 0 && CONTEXTS.is_multiple_of(2));

@@ -48,7 +48,7 @@ impl Model<'_> {
     pub fn predict(&mut self) -> u32 {
         let mut sum = 0.0;
         for (subset, place) in self.places.iter_mut().enumerate() {
-            let mut hash = self.partial | (subset as u32) << 16;
+            let mut hash = self.partial << 8 | (subset as u32) << 17;
             for byte in 0..3 {
                 if subset >> byte & 1 == 1 {
                     hash = (hash ^ self.last >> (8 * byte) & 0xff).wrapping_mul(0x9e37_79b1);

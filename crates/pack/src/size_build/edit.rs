@@ -59,6 +59,34 @@ impl Source {
         Ok(())
     }
 
+    /// Replaces every `from` in all files that have it; there must be some.
+    pub fn replace_everywhere(&mut self, from: &str, new: &str, edit: &'static str) -> Result<(), Error> {
+        let mut found = false;
+        for bytes in self.files.values_mut() {
+            let Ok(text) = std::str::from_utf8(bytes) else { continue };
+            if text.contains(from) {
+                found = true;
+                *bytes = text.replace(from, new).into_bytes();
+            }
+        }
+        if found { Ok(()) } else { Err(self.unknown(edit)) }
+    }
+
+    /// Replaces `old`, which must occur once.
+    pub fn replace_text(
+        &mut self,
+        file: &str,
+        old: &str,
+        new: &str,
+        edit: &'static str,
+    ) -> Result<(), Error> {
+        let replaced = self.text(file).and_then(|text| split_once(text, old));
+        let replaced = replaced.map(|(before, after)| format!("{before}{new}{after}"));
+        let replaced = replaced.ok_or_else(|| self.unknown(edit))?;
+        self.files.insert(PathBuf::from(file), replaced.into_bytes());
+        Ok(())
+    }
+
     /// Keeps those lines of a file for which `keep` says so.
     pub fn keep_lines(
         &mut self,
@@ -118,6 +146,14 @@ mod tests {
         let mut source = source("one two three");
         source.replace("a.rs", "two", " three", "2", "count").unwrap();
         assert_eq!(source.text("a.rs"), Some("one 2 three"));
+    }
+
+    #[test]
+    fn replaces_a_text_that_occurs_once() {
+        let mut source = source("one two two three");
+        source.replace_text("a.rs", "one ", "", "count").unwrap();
+        assert_eq!(source.text("a.rs"), Some("two two three"));
+        assert!(source.replace_text("a.rs", "two", "2", "count").is_err());
     }
 
     #[test]

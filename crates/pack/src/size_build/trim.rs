@@ -127,6 +127,44 @@ pub struct DynamicLibrary;
 
 "#;
 
+/// wide: every operation in line, as the single instruction that it is.
+///
+/// Compiling for size, the compiler would else call a function for a comparison of eight lanes.
+pub fn wide(source: &mut Source) -> Result<(), Error> {
+    source.replace_everywhere("#[inline]", "#[inline(always)]", "put its operations in line")
+}
+
+/// minifb: messages about what a program can only do wrong while it is written, or that the player
+/// replaces by its own, without the formatting that comes along with them.
+pub fn minifb(source: &mut Source) -> Result<(), Error> {
+    let edit = "shorten its messages";
+    let x11 = "src/os/posix/x11.rs";
+    for (old, new) in [
+        (
+            "|e| Error::WindowCreate(format!(\"failed to load Xlib: {:?}\", e))",
+            "|_| Error::WindowCreate(String::new())",
+        ),
+        (
+            "|e| Error::WindowCreate(format!(\"failed to load XCursor: {:?}\", e))",
+            "|_| Error::WindowCreate(String::new())",
+        ),
+        (
+            "|e| Error::WindowCreate(format!(\"illegal width: {}\", e))",
+            "|_| Error::WindowCreate(String::new())",
+        ),
+        (
+            "|e| Error::WindowCreate(format!(\"illegal height: {}\", e))",
+            "|_| Error::WindowCreate(String::new())",
+        ),
+        ("println!(\"Unable to convert {} to c_string\", name);", ""),
+    ] {
+        source.replace_text(x11, old, new, edit)?;
+    }
+    let (start, end) =
+        ("        let err = format!(\n        \"Update failed", "        Err(Error::UpdateFailed(err))");
+    source.replace("src/lib.rs", start, end, "        let err = String::new();\n", edit)
+}
+
 /// rayon-core: as many threads as the system lets this process run on, and no more questions.
 ///
 /// The published crate also asks environment variables, and the standard library reads the limits

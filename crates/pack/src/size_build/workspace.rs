@@ -30,16 +30,20 @@ pub fn prepare(root: &Path, output: &Path, toolchain: &Toolchain) -> Result<Path
         let dependency = find(&metadata, name)?;
         Source::read(&dependency.package, &dependency.directory)
     };
-    let minifb = read("minifb")?;
+    let mut minifb = read("minifb")?;
     let mut x11_dl = read("x11-dl")?;
     trim::x11_dl(&mut x11_dl, &trim::called_functions(&minifb)?)?;
+    trim::minifb(&mut minifb)?;
     let mut rayon_core = read("rayon-core")?;
     trim::rayon_core(&mut rayon_core)?;
+    let mut wide = read("wide")?;
+    trim::wide(&mut wide)?;
 
     let mut replaced = Vec::new();
     let mut manifest = read_text(&root.join("Cargo.toml"))?;
     manifest.push_str("\n[patch.crates-io]\n");
-    for (name, source) in [("x11-dl", x11_dl), ("rayon-core", rayon_core)] {
+    let replacements = [("minifb", minifb), ("x11-dl", x11_dl), ("rayon-core", rayon_core), ("wide", wide)];
+    for (name, source) in replacements {
         source.write(&output.join("deps").join(name))?;
         manifest.push_str(&format!("{name} = {{ path = \"../deps/{name}\" }}\n"));
         replaced.push(name);
