@@ -30,12 +30,12 @@ pub struct Glow {
     width: usize,
     height: usize,
     planes: [Vec<f32>; 3],
-    /// Side of its pixels, px of the picture.
-    scale: f32,
+    /// Side of its pixels, px of the picture: a power of two.
+    scale: usize,
 }
 
 impl Glow {
-    fn new(width: usize, height: usize, scale: f32) -> Self {
+    fn new(width: usize, height: usize, scale: usize) -> Self {
         let planes = std::array::from_fn(|_| vec![0.0; (width + 2 * PAD + 8) * height]);
         Self { width, height, planes, scale }
     }
@@ -58,7 +58,6 @@ impl Glow {
     fn blur(&mut self) {
         self.pad();
         let (width, height, stride) = (self.width, self.height, self.stride());
-        let load = |row: &[f32], x: usize| F::new(std::array::from_fn(|i| row[x + i]));
         parallel::run(self.planes.iter_mut().map(|plane| {
             move || {
                 let mut along = vec![0.0; plane.len()];
@@ -72,7 +71,7 @@ impl Glow {
                     for x in (PAD..PAD + width).step_by(8) {
                         let sum = (0..7).fold(F::ZERO, |sum, k| {
                             let y = (y + k).saturating_sub(3).min(height - 1);
-                            sum + load(&along[y * stride..], x) * splat(TAPS[k])
+                            sum + load(&along, y * stride + x) * splat(TAPS[k])
                         });
                         out[x..x + 8].copy_from_slice(sum.as_array());
                     }
@@ -84,7 +83,7 @@ impl Glow {
 
     /// The next octave: squares of four averaged.
     fn half(&self) -> Glow {
-        let mut half = Glow::new(self.width.div_ceil(2), self.height.div_ceil(2), self.scale * 2.0);
+        let mut half = Glow::new(self.width.div_ceil(2), self.height.div_ceil(2), self.scale * 2);
         let (stride, out_stride) = (self.stride(), half.stride());
         for (out, plane) in half.planes.iter_mut().zip(&self.planes) {
             for y in 0..half.height {
@@ -99,26 +98,57 @@ impl Glow {
         half
     }
 
-    /// Bilinear values at eight pixels of a row of the picture, from `x` on.
-    pub fn at(&self, x: usize, y: usize) -> V3 {
-        let place = |p: usize, end: usize| {
-            let v = ((p as f32 + 0.5) / self.scale - 0.5).max(0.0);
-            let whole = (v as usize).min(end - 1);
-            (whole, v - whole as f32)
-        };
-        let (row, fy) = place(y, self.height);
-        let below = (row + 1).min(self.height - 1);
-        let columns: [(usize, f32); 8] = std::array::from_fn(|i| place(x + i, self.width));
-        let fx = F::new(columns.map(|c| c.1));
+    /// The two rows around row `y` of a picture that is `scale` times as large, joined linearly,
+    /// into `line`.
+    pub fn row(&self, y: usize, line: &mut Line) {
+        let scale = self.scale;
+        let (row, fy) = place(y, scale);
+        let (row, below) = (row.min(self.height - 1), (row + 1).min(self.height - 1));
+        let stride = self.stride();
+        line.offsets = std::array::from_fn(|i| place(i + scale, scale).0);
+        line.fractions = F::new(std::array::from_fn(|i| place(i + scale, scale).1));
+        line.step = scale.trailing_zeros();
+        for (plane, out) in self.planes.iter().zip(&mut line.planes) {
+            out.resize(stride, 0.0);
+            for x in (0..stride - 7).step_by(8) {
+                let (a, b) = (load(plane, row * stride + x), load(plane, below * stride + x));
+                out[x..x + 8].copy_from_slice((a + (b - a) * splat(fy)).as_array());
+            }
+        }
+    }
+}
+
+/// Pixel left of (above) pixel `p` of a picture `scale` times as large, and how far `p` lies beyond.
+fn place(p: usize, scale: usize) -> (usize, f32) {
+    let v = ((p as f32 + 0.5) / scale as f32 - 0.5).max(0.0);
+    (v as usize, v - (v as usize) as f32)
+}
+
+/// Eight numbers from `at` on.
+#[inline(always)]
+fn load(plane: &[f32], at: usize) -> F {
+    F::new(plane[at..at + 8].try_into().unwrap_or_default())
+}
+
+/// A row of a glow, ready to be read at the pixels of a larger picture.
+#[derive(Default)]
+pub struct Line {
+    planes: [Vec<f32>; 3],
+    /// Columns of eight pixels from a multiple of eight on, counted from one column before.
+    offsets: [usize; 8],
+    fractions: F,
+    step: u32,
+}
+
+impl Line {
+    /// Values at eight pixels, from `x` on, a multiple of eight.
+    pub fn at(&self, x: usize) -> V3 {
+        let base = PAD + (x >> self.step) - 1;
         let value = |plane: &Vec<f32>| {
-            let line = |y: usize| {
-                let row = &plane[y * self.stride() + PAD..];
-                let a = F::new(columns.map(|c| row[c.0]));
-                let b = F::new(columns.map(|c| row[c.0 + 1]));
-                a + (b - a) * fx
-            };
-            let (a, b) = (line(row), line(below));
-            a + (b - a) * splat(fy)
+            let near = &plane[base..base + 10];
+            let a = F::new(self.offsets.map(|o| near[o]));
+            let b = F::new(self.offsets.map(|o| near[o + 1]));
+            a + (b - a) * self.fractions
         };
         let [r, g, b] = &self.planes;
         V3 { x: value(r), y: value(g), z: value(b) }
@@ -128,11 +158,12 @@ impl Glow {
 /// The light over the threshold, as the first octave; none if there is no such light.
 fn bright(stage: &Stage, tiles: &[Tile]) -> Option<Glow> {
     let grade = &stage.scene.grade;
-    let step = (stage.height / LINES).max(1).ilog2();
+    // At most eight, so that eight pixels in a row always lie on the columns in the same way.
+    let step = (stage.height / LINES).clamp(1, 8).ilog2();
     let side = 1_usize << step;
     let (w, h) = (stage.width as usize, stage.height as usize);
     let across = w.div_ceil(TILE);
-    let mut glow = Glow::new(w.div_ceil(side), h.div_ceil(side), side as f32);
+    let mut glow = Glow::new(w.div_ceil(side), h.div_ceil(side), side);
     let stride = glow.stride();
     let [r, g, b] = &mut glow.planes;
     let rows = r.chunks_mut(stride).zip(g.chunks_mut(stride)).zip(b.chunks_mut(stride));
@@ -145,7 +176,7 @@ fn bright(stage: &Stage, tiles: &[Tile]) -> Option<Glow> {
                     let tile = &tiles[y / TILE * across + x / TILE];
                     let at = (y % TILE) * TILE + x % TILE;
                     let [cr, cg, cb] = tile.rgb.each_ref().map(|p| {
-                        let v = F::new(std::array::from_fn(|i| p[at + i])) * splat(grade.exposure);
+                        let v = load(p, at) * splat(grade.exposure);
                         v.fast_max(F::ZERO).fast_min(splat(LIMIT))
                     });
                     let most = cr.fast_max(cg).fast_max(cb);
@@ -189,17 +220,18 @@ pub fn bloom(stage: &Stage, tiles: &[Tile]) -> Option<Glow> {
     // From the smallest up, each octave takes in the one below it at its own resolution.
     let mut sum = octaves.pop()?;
     let mut weight = WEIGHTS[WEIGHTS.len() - 1] * amount;
+    let mut line = Line::default();
     for (mut octave, own) in octaves.into_iter().zip(WEIGHTS).rev() {
         // Seen from the octave above it, a pixel is two wide.
-        sum.scale = 2.0;
+        sum.scale = 2;
         let stride = octave.stride();
         for y in 0..octave.height {
+            sum.row(y, &mut line);
             for x in (0..octave.width).step_by(8) {
-                let below = sum.at(x, y) * splat(weight);
+                let below = line.at(x) * splat(weight);
                 for (plane, add) in octave.planes.iter_mut().zip([below.x, below.y, below.z]) {
                     let to = &mut plane[y * stride + PAD + x..][..8];
-                    let here = F::new(std::array::from_fn(|i| to[i]));
-                    to.copy_from_slice((here * splat(own * amount) + add).as_array());
+                    to.copy_from_slice((load(to, 0) * splat(own * amount) + add).as_array());
                 }
             }
         }

@@ -5,7 +5,7 @@
 //! goes in, so a table of it is exact at its entries; 64 entries per octave, joined linearly, stay
 //! within 1e-4 of it.
 
-use crate::math::lanes::{F, V3, splat};
+use crate::math::lanes::{F, V3, splat, splat_u};
 use crate::math::scalar::{pow, srgb_encode};
 use crate::scene::Grade;
 use glam::Vec3;
@@ -59,11 +59,11 @@ impl Display {
 fn lookup(curve: &[f32], x: F) -> F {
     // fast_max takes its second operand if the first is NaN.
     let x = x.fast_max(splat(f32::from_bits(FIRST))).fast_min(splat(63.999_99));
-    let shift = 23 - FINE;
-    let bits = x.to_bits().to_array();
-    let at = bits.map(|b| (b - FIRST) >> shift);
-    let part = bits.map(|b| (b & ((1 << shift) - 1)) as f32 * (1.0 / (1 << shift) as f32));
+    let bits = x.to_bits();
+    let at = ((bits - splat_u(FIRST)) >> (23 - FINE)).to_array();
+    // The lower bits of the mantissa, moved up, are the way to the next entry, plus 1.
+    let part = F::from_bits(((bits << FINE) & splat_u(0x7f_ffff)) | splat_u(0x3f80_0000)) - F::ONE;
     let low = F::new(at.map(|i| curve[i as usize]));
     let high = F::new(at.map(|i| curve[i as usize + 1]));
-    low + (high - low) * F::new(part)
+    low + (high - low) * part
 }

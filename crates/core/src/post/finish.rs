@@ -3,8 +3,8 @@
 //! Vignette: 1 - V r^2.4 with r² = (x² + y²) / 2, x and y from -1 to 1. Grain: a hash of pixel and
 //! frame, which also hides banding. Pixels are quantised by floor(255 v + 1/2).
 
-use super::bloom::{Glow, bloom};
-use crate::math::hash::{hash_x8, unit_x8};
+use super::bloom::{Line, bloom};
+use crate::math::hash::{hash2, mix_x8, unit_x8};
 use crate::math::lanes::{F, LANE_INDEX, V3, splat, splat_u};
 use crate::math::lanes_fn::pow;
 use crate::parallel;
@@ -23,10 +23,15 @@ pub fn finish(stage: &Stage, tiles: &[Tile], n: u64, pixels: &mut [u32]) {
     let glow = glow.as_ref();
     parallel::run(pixels.chunks_mut(width * ROWS).enumerate().map(|(strip, rows)| {
         move || {
+            let mut line = Line::default();
             for (row, y) in rows.chunks_mut(width).zip(strip * ROWS..) {
+                if let Some(glow) = glow {
+                    glow.row(y, &mut line);
+                }
+                let light = glow.map(|_| &line);
                 let tiles = &tiles[y / TILE * across..];
                 for (k, (tile, part)) in tiles.iter().zip(row.chunks_mut(TILE)).enumerate() {
-                    finish_row(stage, tile, glow, (k * TILE, y), n, part);
+                    finish_row(stage, tile, light, (k * TILE, y), n, part);
                 }
             }
         }
@@ -37,7 +42,7 @@ pub fn finish(stage: &Stage, tiles: &[Tile], n: u64, pixels: &mut [u32]) {
 fn finish_row(
     stage: &Stage,
     tile: &Tile,
-    glow: Option<&Glow>,
+    glow: Option<&Line>,
     (x, y): (usize, usize),
     n: u64,
     row: &mut [u32],
@@ -46,41 +51,44 @@ fn finish_row(
     let (w, h) = (stage.width as f32, stage.height as f32);
     let fy = ((y as f32 + 0.5) * 2.0 - h) / h;
     let wipe = (stage.scene.overlay * w) as usize;
+    let seed = splat_u(hash2(n as u32, 0));
     for (base, out) in row.chunks_mut(8).enumerate() {
         let at = (y % TILE) * TILE + base * 8;
         let lanes = |plane: &[f32]| F::new(plane[at..at + 8].try_into().unwrap_or_default());
         let [r, g, b] = &tile.rgb;
         let mut linear = V3 { x: lanes(r), y: lanes(g), z: lanes(b) };
+        let x = x + base * 8;
         if let Some(glow) = glow {
-            linear += glow.at(x + base * 8, y) * splat(1.0 / grade.exposure);
+            linear += glow.at(x) * splat(1.0 / grade.exposure);
         }
         let mut colour = stage.display.map8(linear);
 
-        if x + base * 8 < wipe {
+        if x < wipe {
             for lane in 0..8 {
                 let painted = overlay(tile, (base * 8 + lane, y % TILE), colour.lane(lane));
                 colour.set_lane(lane, painted);
             }
         }
-        let index = splat_u((x + base * 8) as u32) + LANE_INDEX;
-        let fx = F::new(std::array::from_fn(|i| ((x + base * 8 + i) as f32 + 0.5) * (2.0 / w) - 1.0));
         if grade.vignette > 0.0 {
+            let fx = (splat(x as f32 + 0.5) + RAMP) * splat(2.0 / w) - F::ONE;
             let r2 = (fx * fx + splat(fy * fy)) * splat(0.5);
             colour = colour * (F::ONE - splat(grade.vignette) * pow(r2, splat(1.2)));
         }
-        let pixel = index + splat_u(y as u32 * stage.width);
-        let noise = unit_x8(hash_x8(pixel, n as u32, 0)) - splat(0.5);
-        let noise = noise * splat(2.0 * grade.grain);
+        let pixel = splat_u((y * stage.width as usize + x) as u32) + LANE_INDEX;
+        let noise = (unit_x8(mix_x8(pixel, seed)) - splat(0.5)) * splat(2.0 * grade.grain);
         let byte = |c: F| {
             let c = (c + noise).fast_max(F::ZERO).fast_min(F::ONE);
-            (c * splat(255.0) + splat(0.5)).trunc_int().to_array()
+            // A whole number added to 2^23 stands in the low bits.
+            ((c * splat(255.0) + splat(0.5)).floor() + splat(8_388_608.0)).to_bits() & splat_u(255)
         };
-        let (r, g, b) = (byte(colour.x), byte(colour.y), byte(colour.z));
-        for (lane, p) in out.iter_mut().enumerate() {
-            *p = (r[lane] as u32) << 16 | (g[lane] as u32) << 8 | b[lane] as u32;
-        }
+        let packed = (byte(colour.x) << 16u32) | (byte(colour.y) << 8u32) | byte(colour.z);
+        let count = out.len();
+        out.copy_from_slice(&packed.as_array()[..count]);
     }
 }
+
+/// 0, 1, …, 7.
+const RAMP: F = F::new([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
 
 /// Colours of filled and interpolated pixels: #E0342B and #2D6BFF.
 const FILLED: Vec3 = Vec3::new(0.878, 0.204, 0.169);

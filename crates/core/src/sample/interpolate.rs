@@ -8,7 +8,7 @@ use super::block::Sample;
 use super::refine::{Cell, Corners};
 use super::tile::{Kind, Record, TILE, Tile};
 use crate::counters::{Counter, Counters};
-use crate::math::lanes::{F, V3, splat};
+use crate::math::lanes::{F, LANE_INDEX, U, V3, splat, splat_u};
 use crate::quality::Rung;
 use crate::render::Stage;
 use crate::scene::Channel;
@@ -29,8 +29,9 @@ struct Patch {
 }
 
 impl Patch {
-    fn of(known: &Corners, value: impl Fn(Sample) -> Vec3) -> Patch {
-        let [a, b, c, d] = known.corners.map(&value);
+    #[inline(never)]
+    fn of(known: &Corners, value: fn(Sample) -> Vec3) -> Patch {
+        let [a, b, c, d] = known.corners.map(value);
         let mean = (a + b + c + d) * 0.25;
         let bump = known.centre.map_or(Vec3::ZERO, |s| (value(s) - mean) * 16.0);
         Patch { a: V3::splat(a), b: V3::splat(b), c: V3::splat(c), d: V3::splat(d), bump: V3::splat(bump) }
@@ -76,20 +77,21 @@ pub(super) fn fill(
         Rung::Light => Patch::of(known, |s| s.colour()),
         Rung::Surface => Patch::of(known, |s| s.indirect()),
     };
-    let light = Patch::of(known, |s| s.irradiance());
+    let light = (rung == Rung::Light && textured).then(|| Patch::of(known, |s| s.irradiance()));
     for base in (0..count).step_by(8) {
         let place = |lane: usize| {
             let i = base + lane;
             (i & (cell.size - 1), i >> shift)
         };
-        let x = F::new(std::array::from_fn(|i| place(i).0 as f32));
-        let y = F::new(std::array::from_fn(|i| place(i).1 as f32));
+        let index = splat_u(base as u32) + LANE_INDEX;
+        let x = small(index & splat_u(cell.size as u32 - 1));
+        let y = small(index >> shift);
         let between = patch.at(x * scale, y * scale);
         let px = x + splat((corner.0 + cell.x) as f32 + 0.5);
         let py = y + splat((corner.1 + cell.y) as f32 + 0.5);
-        let colour = match rung {
-            Rung::Surface => between + known_surface(stage, first, px, py, counters),
-            Rung::Light if textured => {
+        let colour = match (rung, &light) {
+            (Rung::Surface, _) => between + known_surface(stage, first, px, py, counters),
+            (_, Some(light)) => {
                 between + light.at(x * scale, y * scale) * albedo(stage, first, px, py, counters)
             }
             _ => between,
@@ -108,6 +110,11 @@ pub(super) fn fill(
             }
         }
     }
+}
+
+/// Whole numbers under 2^23 as f32: in the low bits of 2^23, which is then taken off.
+fn small(i: U) -> F {
+    F::from_bits(i | splat_u(0x4b00_0000)) - splat(8_388_608.0)
 }
 
 /// Rays through pixels, and where they meet the shape of `first` (0 where they don't).

@@ -33,7 +33,7 @@ impl RayList {
     }
 
     /// Appends a ray: one lane of these vectors.
-    #[inline(always)]
+    #[inline(never)]
     pub fn push(&mut self, lane: usize, rays: &Rays8, weight: V3, spread: F, sample: u32) {
         let (origin, direction, weight) =
             (rays.origin.lane(lane), rays.direction.lane(lane), weight.lane(lane));

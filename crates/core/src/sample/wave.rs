@@ -263,6 +263,13 @@ fn shade_packet(
     let passed = (one - split.reflectance) * s.value(Channel::Transparency);
     found.refracted = Rays8 { origin: s.point - offset, direction: split.refracted };
     found.refracted_weight = entering * passed * s.colour(Channel::Tint);
+    if level == stage.quality.depth {
+        // Where the chain is cut, the mean light in place of what the rays would find.
+        let mirrored = found.mirrored_weight * shade::ambient(stage, split.mirrored);
+        let refracted = found.refracted_weight * shade::ambient(stage, split.refracted);
+        // Lanes without such a ray have no direction either.
+        found.light += (mirrored & solid) + (refracted & (solid & !split.total));
+    }
     found
 }
 

@@ -1,18 +1,20 @@
 //! The sky behind everything, discs in it, and the shining rectangles that mirrors see.
 
-use crate::math::lanes::{F, V3, splat};
+use crate::math::lanes::{F, V3, min, splat};
 use crate::math::lanes_fn::exp;
 use crate::scene::{Background, Emitter};
 use crate::trace::{NONE, Rays8};
 
-/// Length of [a, b] ∩ [-half, half] over the length of [a, b]: a box seen through a box filter.
+/// Share of the filter [x - w/2, x + w/2] that lies in [-half, half]: a box seen through a box.
 ///
-/// `w` is the filter's width; 0 gives the hard edge.
+/// That is the least of 1, 2 half / w and ½ + (half - |x|) / w, none of which cancels, so that
+/// `w` may be 0, the hard edge, at any distance. 0 where x is NaN.
 #[inline(always)]
 fn covered(x: F, half: F, w: F) -> F {
-    let w = w.fast_max(splat(1e-6));
-    let (a, b) = (x - w * splat(0.5), x + w * splat(0.5));
-    ((b.fast_min(half) - a.fast_max(-half)) / w).fast_max(F::ZERO).fast_min(F::ONE)
+    let inv = F::ONE / w.fast_max(splat(1e-30));
+    let edge = splat(0.5) + (half - x.abs()) * inv;
+    // The second operand counts where one is NaN.
+    min((half + half) * inv, edge).fast_max(F::ZERO).fast_min(F::ONE)
 }
 
 /// Colour of the background in the direction of rays that hit nothing, and what was hit:
@@ -48,7 +50,7 @@ pub fn background(sky: &Background, rays: &Rays8, spread: F) -> (V3, F) {
         let height = y / (r + r) + splat(0.5);
         let low = V3::splat(disc.low);
         let shine = low + (V3::splat(disc.high) - low) * height.fast_max(F::ZERO).fast_min(F::ONE);
-        colour += (shine - colour) * share;
+        colour = colour + (shine - colour) * share;
         id = share.simd_gt(splat(0.5)).select(splat(NONE - 1.0 - k as f32), id);
     }
     (colour, id)
