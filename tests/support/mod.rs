@@ -1,6 +1,9 @@
-//! What the suites that start the player share: the program, its output, reference frames.
+//! What the suites share: the program under test and its output, pictures, reference frames.
 #![allow(dead_code)] // each suite uses a part of it
 
+pub mod crossing;
+pub mod golden;
+pub mod picture;
 #[cfg(target_os = "linux")]
 pub mod x11;
 

@@ -1,0 +1,83 @@
+//! The frames whose pixels are kept as files, and where.
+
+use super::picture::Picture;
+use luc::show;
+use luc_core::quality::Quality;
+use luc_core::render::Renderer;
+use std::path::PathBuf;
+
+/// Size of the kept pictures.
+pub const SIZE: (u32, u32) = (320, 180);
+
+/// Part and local frame of the kept pictures.
+pub const FRAMES: [(&str, u64); 12] = [
+    ("mirror", 0),    // first frame: all at rest
+    ("mirror", 495),  // the ball at its highest
+    ("mirror", 600),  // the cone sinks alone
+    ("mirror", 765),  // the camera farthest left
+    ("mirror", 1275), // the camera farthest right
+    ("mirror", 1919), // last frame
+    ("gold", 0),      // first frame
+    ("gold", 375),    // the large sphere at its highest
+    ("gold", 525),    // the large sphere at its lowest
+    ("gold", 855),    // the camera at its lowest
+    ("gold", 1695),   // the overlay half way across
+    ("gold", 1919),   // last frame: all under the overlay
+];
+
+/// Frames whose fingerprints are kept: part, local frame, preset, size.
+pub const FINGERPRINTS: [(&str, u64, &str, (u32, u32)); 12] = [
+    ("mirror", 37, "draft", (320, 180)),
+    ("mirror", 301, "low", (333, 187)),
+    ("mirror", 704, "medium", (320, 180)),
+    ("mirror", 1111, "high", (640, 360)),
+    ("mirror", 1500, "ultra", (333, 187)),
+    ("mirror", 1918, "reference", (96, 54)),
+    ("gold", 1, "draft", (320, 180)),
+    ("gold", 444, "low", (333, 187)),
+    ("gold", 777, "medium", (320, 180)),
+    ("gold", 1234, "high", (640, 360)),
+    ("gold", 1699, "ultra", (333, 187)),
+    ("gold", 1800, "reference", (96, 54)),
+];
+
+/// Where the pictures and `fingerprints.txt` are kept.
+pub fn directory() -> PathBuf {
+    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/golden"))
+}
+
+/// Name of a frame: part and local frame.
+pub fn name(part: &str, frame: u64) -> String {
+    format!("{part}-{frame:04}")
+}
+
+/// Where the picture of a frame is kept.
+pub fn path(part: &str, frame: u64) -> PathBuf {
+    directory().join(name(part, frame) + ".png")
+}
+
+/// One line of `fingerprints.txt`.
+pub fn line((part, frame, preset, (width, height)): (&str, u64, &str, (u32, u32)), print: u64) -> String {
+    format!("{} {preset} {width}x{height} {print:016x}\n", name(part, frame))
+}
+
+/// Frame of the whole show that shows a part's local frame.
+pub fn global(part: &str, frame: u64) -> u64 {
+    let index = show::PARTS.iter().position(|p| p.name == part).expect("a part of the show");
+    show::start(index) + frame
+}
+
+/// Renders a part's local frame in this process.
+pub fn render(part: &str, frame: u64, preset: &str, (width, height): (u32, u32)) -> Picture {
+    let mut pixels = vec![0; (width * height) as usize];
+    let quality = Quality::named(preset).expect("a preset's name");
+    show::frame(&mut Renderer::default(), global(part, frame), (width, height), &quality, &mut pixels);
+    Picture { width, height, pixels }
+}
+
+/// The command that writes a frame as a picture, for the message of a test that fails.
+pub fn replay(part: &str, frame: u64, preset: &str, (width, height): (u32, u32)) -> String {
+    let default = Quality::PRESETS[Quality::DEFAULT].0;
+    let quality = if preset == default { String::new() } else { format!(" --quality {preset}") };
+    format!("cargo run --release -- --scene {part} --frame {frame} --size {width}x{height}{quality} -o x.png")
+}
