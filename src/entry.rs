@@ -20,7 +20,7 @@
 use core::arch::x86_64::{__cpuid_count, _xgetbv};
 
 /// What a processor without AVX2 is told. The launcher of the packed file says the same.
-const NEEDS_AVX2: &str = "luc needs a CPU with AVX2, and this one has none\n";
+const NEEDS_AVX2: &str = "luc: needs a processor with AVX2, and this one has none\n";
 
 unsafe extern "C" {
     fn write(file: i32, bytes: *const u8, length: usize) -> isize;

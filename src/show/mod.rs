@@ -60,7 +60,9 @@ pub fn scene(n: u64) -> Scene {
 
 /// Renders frame `n` of the show as 0RGB rows, top to bottom, into `pixels` (`width * height`).
 pub fn frame(renderer: &mut Renderer, n: u64, size: (u32, u32), quality: &Quality, pixels: &mut [u32]) {
-    renderer.frame(&scene(n), n % FRAMES, size, quality, pixels);
+    // Grain too follows the local frame, so that a part looks the same wherever it stands.
+    let (part, local) = at(n);
+    renderer.frame(&(PARTS[part].scene)(local), local, size, quality, pixels);
 }
 
 #[cfg(test)]

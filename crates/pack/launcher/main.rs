@@ -39,7 +39,7 @@ unsafe extern "C" fn start(stack: *const usize, header: &Header, payload: *const
     // SAFETY: the opener says that the payload begins there, and has checked its length.
     let payload = unsafe { slice::from_raw_parts(payload, header.payload as usize) };
     if header.flags & NEEDS_AVX2 != 0 && !has_avx2() {
-        die(name, b" needs a CPU with AVX2, and this one has none\n", 2);
+        die(name, b": needs a processor with AVX2, and this one has none\n", 2);
     }
 
     alarm(PATIENCE + (header.output as usize >> 14));

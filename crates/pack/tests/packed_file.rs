@@ -111,7 +111,7 @@ fn a_processor_without_avx2_is_told() {
     write_executable(&packed, &pack_elf_as(program(), &options).unwrap().file).unwrap();
     let result = run(Command::new("qemu-x86_64").args(["-cpu", "Nehalem"]).arg(&packed)).unwrap();
     assert_eq!(result.status.code(), Some(2));
-    assert_eq!(result.errors, "luc needs a CPU with AVX2, and this one has none\n");
+    assert_eq!(result.errors, "luc: needs a processor with AVX2, and this one has none\n");
     if std::arch::is_x86_feature_detected!("avx2") {
         assert_eq!(run(&mut Command::new(&packed)).unwrap().status.code(), Some(7));
     }
