@@ -1,18 +1,20 @@
 //! The sky behind everything, discs in it, and the shining rectangles that mirrors see.
 
-use crate::math::lanes::{F, V3};
+use crate::math::lanes::{F, V3, min};
 use crate::math::lanes_fn::exp;
 use crate::scene::{Background, Emitter};
 use crate::trace::{NONE, Rays8};
 
-/// Length of [a, b] ∩ [-half, half] over the length of [a, b]: a box seen through a box filter.
+/// Share of the filter [x - w/2, x + w/2] that lies in [-half, half]: a box seen through a box.
 ///
-/// `w` is the filter's width; 0 gives the hard edge.
+/// That is the least of 1, 2 half / w and ½ + (half - |x|) / w, none of which cancels, so that
+/// `w` may be 0, the hard edge, at any distance. 0 where x is NaN.
 #[inline(always)]
 fn covered(x: F, half: F, w: F) -> F {
-    let w = w.fast_max(F::splat(1e-6));
-    let (a, b) = (x - w * F::splat(0.5), x + w * F::splat(0.5));
-    ((b.fast_min(half) - a.fast_max(-half)) / w).fast_max(F::ZERO).fast_min(F::ONE)
+    let inv = F::ONE / w.fast_max(F::splat(1e-30));
+    let edge = F::splat(0.5) + (half - x.abs()) * inv;
+    // The second operand counts where one is NaN.
+    min((half + half) * inv, edge).fast_max(F::ZERO).fast_min(F::ONE)
 }
 
 /// Colour of the background in the direction of rays that hit nothing, and what was hit:
@@ -30,11 +32,11 @@ pub fn background(sky: &Background, rays: &Rays8, spread: F) -> (V3, F) {
         }
         let before = &sky.stops[i - 1];
         let x = (d.y - F::splat(before.y)) * F::splat(1.0 / (stop.y - before.y));
-        colour = colour + (at - V3::splat(before.colour)) * x.fast_max(F::ZERO).fast_min(F::ONE);
+        colour += (at - V3::splat(before.colour)) * x.fast_max(F::ZERO).fast_min(F::ONE);
     }
     for glow in &sky.glows {
         let x = (d.dot(V3::splat(glow.direction)) - F::ONE) * F::splat(glow.sharpness);
-        colour = colour + V3::splat(glow.colour) * exp(x);
+        colour += V3::splat(glow.colour) * exp(x);
     }
     let mut id = F::splat(NONE);
     for (k, disc) in sky.discs.iter().enumerate().rev() {
@@ -75,7 +77,7 @@ pub fn emitters(list: &[Emitter], rays: &Rays8, spread: F, t: F) -> (V3, F, F) {
         let share = covered(p.dot(V3::splat(e.u)), F::splat(e.half[0]), w)
             * covered(p.dot(V3::splat(e.v)), F::splat(e.half[1]), w);
         let share = front.select(share, F::ZERO);
-        light = light + V3::splat(e.radiance) * (share * open);
+        light += V3::splat(e.radiance) * (share * open);
         open *= F::ONE - share;
         seen += share.simd_gt(F::splat(0.5)).select(F::splat((1 << k.min(20)) as f32), F::ZERO);
     }

@@ -11,6 +11,11 @@ mod sphere;
 mod surface;
 mod triangle;
 
+#[cfg(test)]
+pub(crate) mod check;
+#[cfg(test)]
+mod tests;
+
 pub use hit::{Hits, NONE, nearest};
 pub use occlusion::{BLOCKED, occlusion};
 pub use plane::plane;
@@ -23,7 +28,8 @@ use crate::math::lanes::{F, V3};
 use crate::scene::{Cone, Cylinder, Plane, Scene, Sphere, Triangle};
 
 /// Eight rays. Directions need not be unit vectors; distances along a ray are in lengths of its
-/// direction.
+/// direction. Squares of origins and directions must not leave the range of f32; rays that break
+/// this may hit anything or nothing, but never at NaN.
 #[derive(Clone, Copy)]
 pub struct Rays8 {
     /// Origins, world.
@@ -76,9 +82,9 @@ impl Rays8 {
     pub fn near_ball(&self, centre: glam::Vec3, radius: f32) -> bool {
         let f = self.origin - V3::splat(centre);
         let d = self.direction;
-        let (ff, b) = (f.dot(f), f.dot(d));
-        let reach = F::splat(radius * radius * 1.0001) + ff * F::splat(2e-6);
-        (ff - b * b / d.dot(d)).simd_le(reach).any()
+        let nearest = f - d * (f.dot(d) / d.dot(d));
+        let reach = F::splat(radius * radius * 1.0001) + f.dot(f) * F::splat(1e-7);
+        !nearest.dot(nearest).simd_gt(reach).all()
     }
 }
 

@@ -1,25 +1,29 @@
 //! Ray against cylinder and cone: where the ray is inside the side, cut by the slab of the ends.
 //!
-//! Both sides are quadratics A t² + 2 B t + C in the plane across the axis a, built from cross
-//! products with a instead of differences of squares, and with factored discriminants:
-//! cylinder D = (r|d×a| - |δ|)(r|d×a| + |δ|) with δ = f·(d×a); cone of slope k
-//! D = (k|f∥ d⟂ - d∥ f⟂| - |δ|)(k|f∥ d⟂ - d∥ f⟂| + |δ|). Roots q/A and C/q, so no root divides by
-//! a vanishing A alone. Intersecting intervals leaves no gap at the rims. Own expansion; the
-//! q-form is Kahan's.
+//! Rays start anew at f, their point nearest to the shape's reference point: what rounding does
+//! from there on is small beside the shape, however far the eye is. Both sides are quadratics
+//! A t² + 2 B t + C in the plane across the axis a, built from cross products with a instead of
+//! differences of squares, and with factored discriminants: cylinder
+//! D = (r|d×a| - |δ|)(r|d×a| + |δ|) with δ = f·(d×a); cone of slope k
+//! D = (k|f∥ d⟂ - d∥ f⟂| - |δ|)(k|f∥ d⟂ - d∥ f⟂| + |δ|). The cone's roots are q/A and C/q, so that
+//! none divides by a vanishing A alone. Intersecting intervals leaves no gap at the rims. Own
+//! expansion; the q-form is Kahan's.
 
 use super::{Rays8, Span};
-use crate::math::lanes::{F, V3, copysign};
+use crate::math::lanes::{F, V3, copysign, max, min};
 use crate::scene::{Cone, Cylinder};
 
 /// What both shapes know of a ray: its parts along the axis and across it.
 struct Axial {
-    /// Origin relative to the reference point, along the axis, lengths.
+    /// Distance along the ray from its origin to where it starts anew.
+    start: F,
+    /// New origin relative to the reference point, along the axis, lengths.
     origin: F,
     /// Direction along the axis.
     direction: F,
     /// Direction × axis: across, turned by 90°.
     n: V3,
-    /// (Origin - reference) × axis.
+    /// (New origin - reference) × axis.
     m: V3,
     /// |n × m|, from the triple product.
     cross: F,
@@ -31,16 +35,23 @@ impl Axial {
         let a = V3::splat(axis);
         let d = rays.direction;
         let f = rays.origin - V3::splat(reference);
+        let start = -f.dot(d) / d.dot(d);
+        let f = f + d * start;
         let n = d.cross_exact(a);
-        Self { origin: f.dot(a), direction: d.dot(a), n, m: f.cross_exact(a), cross: f.dot(n).abs() }
+        Self { start, origin: f.dot(a), direction: d.dot(a), n, m: f.cross_exact(a), cross: f.dot(n).abs() }
     }
 }
 
 /// Roots q/A and C/q of A t² + 2 B t + C for the discriminant `disc`, unordered.
+///
+/// The second is never the larger, which is seen to: with A, B and C all lost to rounding, at a
+/// tangent, it could be anything.
 #[inline(always)]
 fn roots(a: F, b: F, c: F, disc: F) -> (F, F) {
     let q = -(b + copysign(disc.fast_max(F::ZERO).sqrt(), b));
-    (q / a, q.simd_eq(F::ZERO).select(F::ZERO, c / q))
+    let x = q / a;
+    let most = x.abs();
+    (x, min(most, max(-most, q.simd_eq(F::ZERO).select(F::ZERO, c / q))))
 }
 
 /// The interval where a ray is inside the side, cut by the slab `lo..hi` along the axis.
@@ -79,6 +90,7 @@ fn clip(ray: &Axial, side: (F, F), hit: F, range: [f32; 2], caps: [bool; 2]) -> 
     };
     let hit = hit & enter.simd_le(exit);
     let miss = F::splat(-1.0);
+    let (enter, exit) = (enter + ray.start, exit + ray.start);
     let exit = (hit & !open(exit_part)).select(exit, miss);
     let pass = open(enter_part) | !hit;
     Span { enter: pass.select(exit, enter), exit, enter_part: pass.select(exit_part, enter_part), exit_part }
@@ -96,12 +108,12 @@ pub fn cylinder(rays: &Rays8, s: &Cylinder) -> Span {
     let r = F::splat(s.radius);
     let (n, m) = (ray.n.length(), ray.m.length());
     let disc = (r * n - ray.cross) * (r * n + ray.cross);
-    let c = (m - r) * (m + r);
-    let (x, y) = roots(n * n, ray.n.dot(ray.m), c, disc);
-    let parallel = n.simd_eq(F::ZERO);
+    // As rays start near the shape, nothing is lost in -B ± √D, and the roots keep their order.
+    let (a, b, half) = (n * n, ray.n.dot(ray.m), disc.fast_max(F::ZERO).sqrt());
+    let parallel = a.simd_eq(F::ZERO);
     let inf = F::splat(f32::INFINITY);
-    let side = (parallel.select(-inf, x.fast_min(y)), parallel.select(inf, x.fast_max(y)));
-    let hit = parallel.select(c.simd_le(F::ZERO), disc.simd_ge(F::ZERO));
+    let side = (parallel.select(-inf, (-b - half) / a), parallel.select(inf, (half - b) / a));
+    let hit = parallel.select(m.simd_le(r), disc.simd_ge(F::ZERO));
     let range = if s.length < f32::INFINITY { [0.0, s.length] } else { [-s.length, s.length] };
     clip(&ray, side, hit, range, [true; 2])
 }
@@ -125,7 +137,10 @@ pub fn cone(rays: &Rays8, s: &Cone) -> Span {
     let b = ray.n.dot(ray.m) - kd * kf;
     let c = (m - kf.abs()) * (m + kf.abs());
     let root = k * (ray.n * ray.origin - ray.m * ray.direction).length();
-    let disc = (root - ray.cross) * (root + ray.cross);
+    // Parallel to the side, D is B²; and if B is 0 too, the ray runs beside the side for ever.
+    let parallel = a.simd_eq(zero);
+    let disc = parallel.select(b * b, (root - ray.cross) * (root + ray.cross));
+    let beside = parallel & b.simd_eq(zero) & c.simd_gt(zero);
     let (x, y) = roots(a, b, c, disc);
 
     // Flat across the axis (A > 0): between the roots, if these lie on this nappe. Steep: one
@@ -133,12 +148,13 @@ pub fn cone(rays: &Rays8, s: &Cone) -> Span {
     let flat = a.simd_gt(zero);
     let (lo, hi) = (x.fast_min(y), x.fast_max(y));
     let up = ray.direction.simd_gt(zero);
-    let parallel = a.simd_eq(zero);
     let own = parallel.select(y, up.select(hi, lo));
     let middle = (lo + hi) * F::splat(0.5);
     let height = ray.origin + flat.select(middle, own) * ray.direction;
     let enter = flat.select(lo, up.select(own, -inf));
     let exit = flat.select(hi, up.select(inf, own));
-    let hit = a.simd_lt(zero) | (disc.simd_ge(zero) & height.simd_ge(zero));
-    clip(&ray, (enter, exit), hit, s.range, s.caps)
+    let hit = a.simd_lt(zero) | (disc.simd_ge(zero) & height.simd_ge(zero) & !beside);
+    // A tip needs no end: the side is on this nappe already, and a slab would cut it off by rounding.
+    let from = if s.range[0] > 0.0 { s.range[0] } else { f32::NEG_INFINITY };
+    clip(&ray, (enter, exit), hit, [from, s.range[1]], s.caps)
 }

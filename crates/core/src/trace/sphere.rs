@@ -1,11 +1,12 @@
 //! Ray and sphere: the discriminant from the perpendicular that runs from centre to ray.
 //!
 //! With f = o - c and l = f - ((f·d)/(d·d)) d: D = r² - l·l, q = b + sign(b) sqrt((d·d) D),
-//! b = -f·d, and the roots (f·f - r²)/q and q/(d·d). f·f - r² is taken as (|f|-r)(|f|+r).
+//! b = -f·d, and the roots (f·f - r²)/q and q/(d·d). f·f - r² is taken as (|f|-r)(|f|+r). Which
+//! root comes first is asked of the roots: near a tangent, rounding may swap them.
 //! Haines, Günther and Akenine-Möller, Ray Tracing Gems ch. 7.
 
 use super::{Rays8, Span};
-use crate::math::lanes::{F, V3, copysign};
+use crate::math::lanes::{F, V3, copysign, max, min};
 use crate::scene::Sphere;
 
 /// Where `rays` cross the sphere.
@@ -21,13 +22,14 @@ pub fn sphere(rays: &Rays8, s: &Sphere) -> Span {
     let ff = f.dot(f).sqrt();
     let c = (ff - r) * (ff + r);
     let one = q / a;
-    let other = q.simd_eq(F::ZERO).select(F::ZERO, c / q);
-    let behind = b.simd_lt(F::ZERO);
+    // Never the larger of the two: at a tangent, with q lost to rounding, c/q could be anything.
+    let most = one.abs();
+    let other = min(most, max(-most, q.simd_eq(F::ZERO).select(F::ZERO, c / q)));
     let hit = disc.simd_ge(F::ZERO);
     let miss = F::splat(-1.0);
     Span {
-        enter: hit.select(behind.select(one, other), miss),
-        exit: hit.select(behind.select(other, one), miss),
+        enter: hit.select(min(one, other), miss),
+        exit: hit.select(max(one, other), miss),
         enter_part: F::ZERO,
         exit_part: F::ZERO,
     }

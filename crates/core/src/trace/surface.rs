@@ -2,8 +2,8 @@
 //!
 //! A point o + t d is off its surface by rounding that grows with t. It is projected back onto
 //! the shape, and secondary rays start [`Surface::clearance`] away along the geometric normal: 4
-//! units in the last place of the largest coordinate involved (Wächter and Binder, Ray Tracing
-//! Gems ch. 6; PBRT 4th ed. §6.8.6).
+//! units in the last place of the largest coordinate involved, and of the point relative to where
+//! the shape is measured from (Wächter and Binder, Ray Tracing Gems ch. 6; PBRT 4th ed. §6.8.6).
 
 use super::{Rays8, Shape};
 use crate::math::lanes::{F, V3};
@@ -84,8 +84,8 @@ fn locate(scene: &Scene, shape: Shape, part: u32, p: V3) -> Located {
         Shape::Plane(s) => onto_plane(p, s.point, V3::splat(s.normal)),
         Shape::Triangle(s) => {
             let [a, b, c] = s.corners;
-            let n = (b - a).cross(c - a);
-            onto_plane(p, a, V3::splat(n).normalize())
+            let n = V3::splat(b - a).cross_exact(V3::splat(c - a));
+            onto_plane(p, a, n.normalize())
         }
         Shape::Cylinder(s) => round(p, s.base, s.axis, (s.radius, 0.0), [0.0, s.length], part),
         Shape::Cone(s) => round(p, s.apex, s.axis, (0.0, s.slope), s.range, part),
@@ -105,7 +105,8 @@ fn round(
     if part > 0 {
         let height = range[part as usize - 1];
         let n = if part == 1 { -a } else { a };
-        return onto_plane(p, reference + axis * height, n);
+        let (point, n, normal, scale) = onto_plane(p, reference + axis * height, n);
+        return (point, n, normal, scale + max_abs(point - V3::splat(reference)));
     }
     let reference = V3::splat(reference);
     let f = p - reference;
@@ -117,9 +118,9 @@ fn round(
     let radial = V3::select(on_axis, -a, radial * (F::ONE / on_axis.select(F::ONE, len)));
     let slope = F::splat(profile.1);
     let scale = (F::ONE + slope * slope).sqrt();
-    let n = (radial - a * slope) * (F::ONE / scale);
+    let n = V3::select(on_axis, radial, (radial - a * slope) * (F::ONE / scale));
     let off = (len - (F::splat(profile.0) + slope * height)) / scale;
-    (p - n * off, n, n, max_abs(reference) + F::splat(profile.0))
+    (p - n * off, n, n, max_abs(reference) + height.abs() + len)
 }
 
 /// Locates the surfaces that `rays` hit at distances `t`; ids as in [`super::Hits`]. `spread` is

@@ -1,0 +1,313 @@
+//! Shared by the tests of tracing, shading and culling: random shapes' rays, f64 truth, scores.
+//!
+//! **Condition.** A kernel that is backward stable gives the exact answer for a surface that lies
+//! up to a *skin* δ = u (|o - c| + r + |t d|) off the true one, u = 2^-24: what f32 rounding of the
+//! ray relative to the shape may do. The oracle, in f64, answers for the shape grown by any skin.
+//! - **Lost**: no crossing reported though the shape shrunk by 4 δ is crossed, ahead.
+//! - **False**: a crossing reported though the shape grown by 4 δ is missed.
+//! - **Score** of a distance t: |t - ref| / max(unit, ulp(ref) / 2), where unit is how far ref moves
+//!   when the shape grows or shrinks by δ (to the middle of the chord, where it vanishes), or a
+//!   quarter of that for 4 δ, where more.
+//!
+//! `{:?}` of an f32 reads back to the same bits, so a printed shape and ray replay a failure.
+
+use super::{Rays8, Span};
+use crate::math::hash::{hash2, unit};
+use crate::math::lanes::V3;
+use glam::{DVec3, Vec3};
+
+/// Half an ulp of 1.
+pub const U: f64 = 1.0 / 16_777_216.0;
+
+/// Reproducible random numbers: a counter under a hash.
+pub struct Random(u32, u32);
+
+impl Random {
+    /// The stream of this number.
+    pub fn new(stream: u32) -> Self {
+        Self(0, stream)
+    }
+
+    /// 32 random bits.
+    pub fn bits(&mut self) -> u32 {
+        self.0 += 1;
+        hash2(self.0, self.1)
+    }
+
+    /// Whether a case of one in `n` happens.
+    pub fn one_in(&mut self, n: u32) -> bool {
+        self.bits().is_multiple_of(n)
+    }
+
+    /// Uniform in `lo..hi`.
+    pub fn range(&mut self, lo: f32, hi: f32) -> f32 {
+        lo + (hi - lo) * unit(self.bits())
+    }
+
+    /// Positive, of uniform exponent in `lo..hi`.
+    pub fn size(&mut self, lo: i32, hi: i32) -> f32 {
+        let exponent = lo + (self.bits() % (hi - lo) as u32) as i32;
+        f32::from_bits(((127 + exponent) as u32) << 23 | self.bits() >> 9)
+    }
+
+    /// Like [`Random::size`], of either sign, now and then ±0.
+    pub fn signed(&mut self, lo: i32, hi: i32) -> f32 {
+        let size = if self.one_in(16) { 0.0 } else { self.size(lo, hi) };
+        if self.one_in(2) { -size } else { size }
+    }
+
+    /// A unit vector, one in eight along a coordinate axis.
+    pub fn direction(&mut self) -> Vec3 {
+        if self.one_in(8) {
+            return [Vec3::X, Vec3::Y, Vec3::Z, -Vec3::X, -Vec3::Y, -Vec3::Z][self.bits() as usize % 6];
+        }
+        loop {
+            let v = Vec3::new(self.range(-1.0, 1.0), self.range(-1.0, 1.0), self.range(-1.0, 1.0));
+            if (0.01..1.0).contains(&v.length_squared()) {
+                return v.normalize();
+            }
+        }
+    }
+
+    /// A vector of uniform exponent.
+    pub fn vector(&mut self, lo: i32, hi: i32) -> Vec3 {
+        self.direction() * self.size(lo, hi)
+    }
+
+    /// A ray through about `target`, a point on a surface with this normal, of a body about this
+    /// large around this axis: any, grazing, along the axis or across it; from afar, from near,
+    /// from the surface itself.
+    pub fn ray(&mut self, target: Vec3, normal: Vec3, axis: Vec3, size: f32) -> (Vec3, Vec3) {
+        let tilt = self.direction() * self.signed(-30, -1);
+        let any = self.direction();
+        let direction = match self.bits() % 8 {
+            0 => (any - normal * any.dot(normal)).normalize_or(any) + normal * self.signed(-30, -2),
+            1 => axis + tilt,
+            2 => -axis,
+            3 => (any - axis * any.dot(axis)).normalize_or(any),
+            4 => any + tilt,
+            _ => any,
+        };
+        let direction = direction * if self.one_in(4) { self.size(-8, 8) } else { 1.0 };
+        let back = if self.one_in(8) { 0.0 } else { size * self.signed(-8, 14) };
+        (target - direction.normalize_or(any) * back, direction)
+    }
+}
+
+/// A ray in f64.
+#[derive(Clone, Copy)]
+pub struct Line {
+    /// Origin.
+    pub o: DVec3,
+    /// Direction.
+    pub d: DVec3,
+}
+
+/// Where a line is inside a body: distances and parts crossed, as in [`Span`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Inside {
+    /// First and last crossing.
+    pub t: [f64; 2],
+    /// Parts of the surface.
+    pub part: [u32; 2],
+}
+
+/// Counts of one kernel's cases, and the worst of them.
+pub struct Tally {
+    name: &'static str,
+    /// Rays tested.
+    pub cases: u32,
+    /// Rays that truly hit.
+    pub hits: u32,
+    /// Largest score.
+    pub worst: f64,
+    worst_at: String,
+    failures: Vec<String>,
+}
+
+impl Tally {
+    /// No cases yet.
+    pub fn new(name: &'static str) -> Self {
+        Tally { name, cases: 0, hits: 0, worst: 0.0, worst_at: String::new(), failures: Vec::new() }
+    }
+
+    /// Counts a score.
+    pub fn score(&mut self, score: f64, replay: impl FnOnce() -> String) {
+        if score > self.worst || score.is_nan() {
+            self.worst = if score.is_nan() { f64::INFINITY } else { score };
+            self.worst_at = replay();
+        }
+    }
+
+    /// Counts a failure.
+    pub fn fail(&mut self, what: &str, replay: impl FnOnce() -> String) {
+        self.failures.push(if self.failures.len() < 5 {
+            format!("{what}: {}", replay())
+        } else {
+            String::new()
+        });
+    }
+
+    /// Prints the counts; panics with the rays to replay if something failed or scored over `gate`.
+    pub fn finish(self, gate: f64) {
+        let Tally { name, cases, hits, worst, worst_at, failures } = self;
+        println!("{name}: {cases} cases, {hits} hits, {} failures, worst score {worst:.3}", failures.len());
+        let shown: Vec<_> = failures.iter().filter(|f| !f.is_empty()).map(String::as_str).collect();
+        assert!(failures.is_empty(), "{name}: {} of {cases}:\n{}", failures.len(), shown.join("\n"));
+        assert!(worst <= gate, "{name}: score {worst} at {worst_at}");
+    }
+
+    /// Judges lane results of a body against the truth; see the module. `truth` answers for a ray
+    /// and two skins, of the side and of the ends; `reach` is |o - c| + r of each ray.
+    ///
+    /// A part is only judged if it is the same with side and ends moved by 4 skins either way. Nor
+    /// is a ray that passes an open end judged, unless its parts are such.
+    pub fn body(
+        &mut self,
+        rays: &Rays8,
+        span: &Span,
+        truth: impl Fn(&Line, [f64; 2]) -> Option<Inside>,
+        reach: impl Fn(&Line) -> f64,
+        open: [bool; 2],
+        shape: &dyn std::fmt::Debug,
+    ) {
+        let t = [span.enter.to_array(), span.exit.to_array()];
+        let part = [span.enter_part.to_array(), span.exit_part.to_array()];
+        for i in 0..8 {
+            let (o, d) = (rays.origin.lane(i), rays.direction.lane(i));
+            let line = Line { o: o.as_dvec3(), d: d.as_dvec3() };
+            let got = (t[0][i], t[1][i]);
+            let replay = || format!("{shape:?} origin {o:?} direction {d:?} got {got:?}");
+            self.cases += 1;
+            let (reach, length) = (reach(&line), line.d.length());
+            let closed = truth(&line, [0.0; 2]);
+            if closed.is_some_and(|e| e.t[1] > 0.0) {
+                self.hits += 1;
+            }
+            if got.0.is_nan() || got.1.is_nan() {
+                self.fail("NaN", replay);
+                continue;
+            }
+            let skin = U * (2.0 * reach);
+            let parts = |k: usize, skin: f64| {
+                let part = |side, ends| truth(&line, [side, ends]).map(|e| e.part[k]);
+                [(4.0, 4.0), (4.0, -4.0), (-4.0, 4.0), (-4.0, -4.0)]
+                    .into_iter()
+                    .all(|(side, ends)| part(side * skin, ends * skin) == closed.map(|e| e.part[k]))
+            };
+            if open != [false; 2] && !(parts(0, skin) && parts(1, skin)) {
+                continue;
+            }
+            let truth = |skin: f64| truth(&line, [skin; 2]).and_then(|e| through(e, open));
+            let exact = closed.and_then(|e| through(e, open));
+            // What is crossed far out only counts by the skin there.
+            let nearest =
+                |t: [f64; 2]| t.into_iter().filter(|t| t.is_finite()).fold(1e30, |m: f64, t| m.min(t.abs()));
+            if got == (-1.0, -1.0) {
+                let inner = truth(-4.0 * skin).and_then(|e| truth(-4.0 * (skin + U * nearest(e.t) * length)));
+                if let Some(inner) = inner.filter(|e| e.t[1] > 0.0) {
+                    self.fail("lost", || format!("{} truth {exact:?} inner {inner:?}", replay()));
+                }
+                continue;
+            }
+            let far = U * nearest([got.0.into(), got.1.into()]) * length;
+            if truth(4.0 * skin).or_else(|| truth(4.0 * (skin + far))).is_none() {
+                self.fail("false", || format!("{} truth {exact:?}", replay()));
+                continue;
+            }
+            if got.0 > got.1 && got.1 != -1.0 {
+                self.fail("order", replay);
+            }
+            let Some(exact) = exact else { continue };
+            let middle = 0.5 * (exact.t[0] + exact.t[1]);
+            for k in 0..2 {
+                let (want, got) = (exact.t[k], f64::from(t[k][i]));
+                if want.abs() * length > 1e6 * reach && want != -1.0 {
+                    continue;
+                }
+                let skin = U * (reach + want.abs() * length);
+                let moved = |skin: f64| truth(skin).map_or(middle, |e| e.t[k]);
+                let unit = |k: f64| (moved(k * skin) - want).abs().max((moved(-k * skin) - want).abs()) / k;
+                let unit = unit(1.0).max(unit(4.0));
+                if unit == f64::INFINITY {
+                    continue;
+                }
+                let score = (got - want).abs() / unit.max(half_ulp(want));
+                self.score(score, || format!("{} truth {exact:?}", replay()));
+                if want != -1.0 && part[k][i] != exact.part[k] as f32 && parts(k, skin) {
+                    self.fail("part", || format!("{} part {} truth {exact:?}", replay(), part[k][i]));
+                }
+            }
+        }
+    }
+}
+
+/// What is left of the crossings where ends are open: an inner wall instead of the first crossing,
+/// and no last one (-1).
+fn through(inside: Inside, open: [bool; 2]) -> Option<Inside> {
+    let gap = |part: u32| part > 0 && open[part as usize - 1];
+    let Inside { t: [enter, exit], part: [first, last] } = inside;
+    match (gap(first), gap(last)) {
+        (true, true) => None,
+        (true, false) => Some(Inside { t: [exit; 2], part: [last; 2] }),
+        (false, true) => Some(Inside { t: [enter, -1.0], part: [first, last] }),
+        _ => Some(inside),
+    }
+}
+
+/// 2^k.
+pub fn two_to(k: i32) -> f32 {
+    f32::from_bits(((127 + k) as u32) << 23)
+}
+
+/// Half the spacing of f32 at `x`.
+pub fn half_ulp(x: f64) -> f64 {
+    let x = (x.abs() as f32).max(f32::MIN_POSITIVE);
+    0.5 * f64::from(x.next_up() - x)
+}
+
+/// Eight rays, lane by lane.
+pub fn packet(mut ray: impl FnMut() -> (Vec3, Vec3)) -> Rays8 {
+    let rays: [(Vec3, Vec3); 8] = std::array::from_fn(|_| ray());
+    Rays8 { origin: V3::from_fn(|i| rays[i].0), direction: V3::from_fn(|i| rays[i].1) }
+}
+
+/// The same ray in all lanes.
+pub fn splat(rays: &Rays8, lane: usize) -> Rays8 {
+    Rays8 { origin: V3::splat(rays.origin.lane(lane)), direction: V3::splat(rays.direction.lane(lane)) }
+}
+
+/// Rays with signed zeros, subnormals, huge numbers, infinities and NaN in every combination that
+/// one changed coordinate of origin or direction and a change to all of them can make.
+pub fn poisoned() -> Vec<(Vec3, Vec3)> {
+    const ODD: [f32; 12] = [
+        0.0,
+        -0.0,
+        1e-45,
+        -1e-40,
+        1e-25,
+        1e19,
+        -1e25,
+        f32::MAX,
+        f32::MIN,
+        f32::INFINITY,
+        f32::NEG_INFINITY,
+        f32::NAN,
+    ];
+    let mut rays = Vec::new();
+    let plain = [(Vec3::new(0.1, 0.2, -5.0), Vec3::Z), (Vec3::ZERO, Vec3::new(0.3, -0.4, 0.5))];
+    for odd in ODD {
+        for (o, d) in plain {
+            for axis in 0..3 {
+                let (mut o2, mut d2) = (o, d);
+                (o2[axis], d2[axis]) = (odd, odd);
+                rays.extend([(o2, d), (o, d2), (o2, d2)]);
+            }
+            rays.extend([(Vec3::splat(odd), d), (o, Vec3::splat(odd)), (o * odd, d * odd), (o, d * odd)]);
+        }
+    }
+    while rays.len() % 8 != 0 {
+        rays.push(plain[0]);
+    }
+    rays
+}

@@ -1,0 +1,7 @@
+//! Hard cases of the kernels, against f64: see [`super::check`] for what scores mean.
+
+mod flat;
+mod packets;
+mod round;
+mod secondary;
+mod sphere;
