@@ -83,3 +83,6 @@ pub fn emitters(list: &[Emitter], rays: &Rays8, spread: F, t: F) -> (V3, F, F) {
     }
     (light, F::ONE - open, seen)
 }
+
+#[cfg(test)]
+mod tests;
