@@ -13,7 +13,8 @@ const CYCLE: f32 = 8.0;
 
 /// How far the cone stands over its rest, units over seconds of the cycle: up on the kick, then it
 /// sinks by itself for 3.5 s.
-const CONE: [Key; 3] = [key(0.0, 0.0, Ease::Smooth), key(0.25, 0.9, Ease::Smooth), key(3.75, 0.0, Ease::Step)];
+const CONE: [Key; 3] =
+    [key(0.0, 0.0, Ease::Smooth), key(0.25, 0.9, Ease::Smooth), key(3.75, 0.0, Ease::Step)];
 
 /// The same for the ball, which carries the cone up and falls back freely.
 const BALL: [Key; 4] = [

@@ -131,13 +131,19 @@ impl Dop {
             if p.z < NEAR {
                 return Dop::EVERYWHERE;
             }
-            let e = (dop.axis_x * splat(p.x) + dop.axis_y * splat(p.y)) * splat(1.0 / p.z);
-            let slack = e.abs() * splat(2e-6) + splat(1e-6);
-            dop.lo = dop.lo.fast_min(e - slack);
-            dop.hi = dop.hi.fast_max(e + slack);
+            dop.add(p);
             dop.near = dop.near.min(p.z);
         }
         dop
+    }
+
+    /// Adds the projection of `p`, with room for the rounding of the two products.
+    fn add(&mut self, p: Vec3) {
+        let inv = splat(1.0 / p.z);
+        let (x, y) = (self.axis_x * splat(p.x) * inv, self.axis_y * splat(p.y) * inv);
+        let (e, slack) = (x + y, (x.abs() + y.abs()) * splat(1e-6) + splat(1e-6));
+        self.lo = self.lo.fast_min(e - slack);
+        self.hi = self.hi.fast_max(e + slack);
     }
 
     /// Bound of the hull of two discs across `axis` (world) of radii `r` around `a` and `b`.
@@ -165,15 +171,31 @@ impl Dop {
         Dop::hull(Dop::with_edges(along, [edge(1.0), edge(-1.0)]), points)
     }
 
+    /// Adds the point infinitely far in direction `v` (view coordinates), if it is not behind.
+    fn towards(mut self, v: Vec3) -> Dop {
+        if v.z > 1e-3 {
+            self.add(v);
+        } else if v.z > -1e-3 {
+            // Seen from the side: without end along all axes but those across it. Not infinite, so
+            // that products with a depth of 0 are numbers.
+            let e = self.axis_x * splat(v.x) + self.axis_y * splat(v.y);
+            let (far, across) = (splat(1e15), splat(1e-3));
+            self.lo = e.simd_lt(-across).select(-far, self.lo);
+            self.hi = e.simd_gt(across).select(far, self.hi);
+        }
+        self
+    }
+
     /// Bound of an infinite bar: its part well in front of the eye, or everything if it passes
-    /// close to the eye.
+    /// close to the eye. It holds in directions up to 55° off forward, and in all if forward is
+    /// across the bar.
     fn bar(view: &View, base: Vec3, axis: Vec3, r: f32) -> Dop {
         let from_axis = (view.origin - base).cross(axis).length();
         if from_axis < 8.0 * r + 8.0 * NEAR {
             return Dop::EVERYWHERE;
         }
         let middle = base + axis * (view.origin - base).dot(axis);
-        let far = 1e4 * from_axis;
+        let far = 1e3 * from_axis;
         let (a, b) = (view.local(middle - axis * far), view.local(middle + axis * far));
         // Clip the axis where it is 3 r (and a little) before the eye.
         let least = 3.0 * r + from_axis * 0.02;
@@ -189,7 +211,8 @@ impl Dop {
             e = (least - a.z) / dz;
         }
         let at = |x: f32| middle + axis * (far * (2.0 * x - 1.0));
-        Dop::discs(view, axis, (at(s), r), (at(e), r))
+        let v = view.world_from_view.transpose() * axis;
+        Dop::discs(view, axis, (at(s), r), (at(e), r)).towards(v).towards(-v)
     }
 
     /// Bound of a shape as seen in `view`.

@@ -3,6 +3,8 @@
 mod cover;
 mod dop;
 mod shaft;
+#[cfg(test)]
+mod tests;
 
 pub use cover::may_cover;
 pub use dop::{Dop, View, dops};

@@ -16,12 +16,14 @@ pub struct Shaft {
     dop: Dop,
 }
 
-/// A point well inside a shape to turn the lamp's view to.
-fn middle(shape: Shape) -> Vec3 {
+/// A point well inside a shape to turn the lamp's view to; of an infinite bar the nearest, so that
+/// its bound holds all around.
+fn middle(shape: Shape, lamp: Vec3) -> Vec3 {
     match shape {
         Shape::Sphere(s) => s.centre,
         Shape::Plane(s) => s.point,
-        Shape::Cylinder(s) => s.base + s.axis * if s.length < f32::INFINITY { s.length * 0.5 } else { 0.0 },
+        Shape::Cylinder(s) if s.length < f32::INFINITY => s.base + s.axis * (s.length * 0.5),
+        Shape::Cylinder(s) => s.base + s.axis * s.axis.dot(lamp - s.base),
         Shape::Cone(s) => {
             let end = if s.range[1] < f32::INFINITY { s.range[1] } else { s.range[0] + 1.0 };
             s.apex + s.axis * (0.5 * (s.range[0] + end))
@@ -35,7 +37,7 @@ pub fn shafts(scene: &Scene, lamp: &Lamp) -> Vec<Shaft> {
     (0..scene.shape_count())
         .map(|i| {
             let shape = scene.shape(i);
-            let view = View::towards(lamp.position, middle(shape));
+            let view = View::towards(lamp.position, middle(shape, lamp.position));
             Shaft { view, dop: Dop::of(&view, shape) }
         })
         .collect()

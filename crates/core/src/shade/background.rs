@@ -50,7 +50,7 @@ pub fn background(sky: &Background, rays: &Rays8, spread: F) -> (V3, F) {
         let height = y / (r + r) + splat(0.5);
         let low = V3::splat(disc.low);
         let shine = low + (V3::splat(disc.high) - low) * height.fast_max(F::ZERO).fast_min(F::ONE);
-        colour = colour + (shine - colour) * share;
+        colour += (shine - colour) * share;
         id = share.simd_gt(splat(0.5)).select(splat(NONE - 1.0 - k as f32), id);
     }
     (colour, id)
@@ -85,3 +85,6 @@ pub fn emitters(list: &[Emitter], rays: &Rays8, spread: F, t: F) -> (V3, F, F) {
     }
     (light, F::ONE - open, seen)
 }
+
+#[cfg(test)]
+mod tests;

@@ -74,10 +74,13 @@ fn phong(s: &Surface, l: V3, v: V3, n_l: F) -> V3 {
 #[inline(never)]
 fn cook_torrance(s: &Surface, l: V3, v: V3, n_l: F) -> V3 {
     let n = s.normal;
-    let h = (l + v).normalize();
+    // For unit vectors v·h = l·h = |l + v| / 2, which is the same both ways, bit for bit.
+    let sum = l + v;
+    let length = sum.length();
+    let h = sum * (F::ONE / length);
     let n_v = n.dot(v).fast_max(splat(1e-4));
     let n_h = n.dot(h).fast_max(splat(1e-4));
-    let v_h = v.dot(h).fast_max(splat(1e-4));
+    let v_h = (length * splat(0.5)).fast_max(splat(1e-4));
     let m = s.value(Channel::Roughness).fast_max(splat(1e-3));
     let c2 = n_h * n_h;
     let m2 = m * m;
@@ -164,3 +167,6 @@ fn tinted(stage: &Stage, lamp: &Lamp, code: F) -> V3 {
     });
     colour * V3::from_fn(|i| lanes[i])
 }
+
+#[cfg(test)]
+mod tests;

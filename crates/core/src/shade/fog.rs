@@ -8,8 +8,8 @@ use crate::trace::Rays8;
 
 /// Transmittance and in-scattered light of rays with unit direction up to the distance `t`.
 ///
-/// The slab's near and far planes are chosen by the direction's sign, so that 0 · inf = NaN never
-/// wins a comparison (NaN loses in the second operand of `fast_max`).
+/// The slab's near and far planes are chosen by the sign of 1/d, which knows -0 too, and the
+/// bounds only move where a comparison holds, so that 0 · inf = NaN, on a face, changes nothing.
 #[inline(never)]
 pub fn fog(fog: &Fog, rays: &Rays8, t: F) -> (F, V3) {
     let (lo, hi) = (V3::splat(fog.lo), V3::splat(fog.hi));
@@ -30,3 +30,6 @@ pub fn fog(fog: &Fog, rays: &Rays8, t: F) -> (F, V3) {
     let through = exp(-(depth * splat(fog.density)));
     (through, V3::splat(fog.colour) * (F::ONE - through))
 }
+
+#[cfg(test)]
+mod tests;

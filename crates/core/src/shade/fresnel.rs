@@ -51,12 +51,15 @@ pub fn split(s: &Surface, d: V3) -> Split {
     let one = V3::splat(glam::Vec3::ONE);
     let reflectance = V3::select(total, one, schlick(s.colour(Channel::F0), schlick_cos));
 
-    // A blended normal may mirror into the body: lift such rays just over the true surface.
+    // A blended normal may mirror into the body: lift such rays just over the true surface, but
+    // never over where the true surface would mirror them, which flat mirrors show at grazing.
     let facing = V3::select(s.inside, -s.outward, s.outward);
     let mirrored = d + n * (cos + cos);
     let height = mirrored.dot(facing);
-    let least = splat(0.01);
-    let low = height.simd_lt(least);
-    let lifted = (mirrored + facing * (least - height)).normalize();
-    Split { reflectance, mirrored: V3::select(low, lifted, mirrored), refracted, total }
+    let least = (-d.dot(facing)).fast_max(splat(1e-6)).fast_min(splat(0.01));
+    let lift = (least - height).fast_max(F::ZERO);
+    Split { reflectance, mirrored: (mirrored + facing * lift).normalize(), refracted, total }
 }
+
+#[cfg(test)]
+mod tests;

@@ -203,7 +203,7 @@ fn leaks(mesh: &[Triangle], rays: &Rays8) -> u32 {
 fn fans_have_no_leaks() {
     let mut random = Random::new(70);
     let mut lost = 0;
-    for case in 0..50_000 {
+    for case in 0..60_000 {
         let offset = [0.0, 1e3, 1e5][case % 3];
         let centre = Vec3::new(offset, -offset * 0.7, offset * 0.3);
         let n = random.direction();

@@ -1,0 +1,67 @@
+//! The box filter shares out all light, at any distance; rays that never meet a disc or rectangle.
+
+use super::*;
+use crate::math::lanes::splat;
+use crate::scene::Disc;
+use crate::trace::check::{Random, packet};
+use glam::Vec3;
+
+#[test]
+fn neighbouring_boxes_share_the_filter_without_rest() {
+    let mut random = Random::new(500);
+    for _ in 0..100_000 {
+        let half = random.size(-6, 6);
+        let width = if random.one_in(8) { 0.0 } else { half * random.size(-12, 4) };
+        let x = half * random.range(-8.0, 8.0);
+        let sum: f32 = (-24..=24)
+            .map(|k| covered(splat(x - 2.0 * half * k as f32), splat(half), splat(width)).to_array()[0])
+            .sum();
+        let rounding = 4e-6 * (x.abs() + half) / width.max(1e-30);
+        // Without a width, a point on the very edge is half in.
+        assert!(
+            (sum - 1.0).abs() < (2e-6 + rounding).min(1.01),
+            "{sum}: x {x:?} half {half:?} width {width:?}"
+        );
+    }
+}
+
+#[test]
+fn the_filter_is_a_ramp_as_wide_as_itself() {
+    let at = |x: f32, half: f32, w: f32| covered(splat(x), splat(half), splat(w)).to_array()[0];
+    assert_eq!(
+        (at(0.0, 1.0, 0.5), at(1.0, 1.0, 0.5), at(1.25, 1.0, 0.5), at(0.75, 1.0, 0.5)),
+        (1.0, 0.5, 0.0, 1.0)
+    );
+    assert_eq!(at(0.0, 1.0, 8.0), 0.25, "a filter wider than the box");
+    // A hard edge, near and far.
+    assert_eq!((at(10.0, 20.0, 0.0), at(1e6, 2e6, 0.0), at(2e6, 1e6, 0.0)), (1.0, 1.0, 0.0));
+    assert_eq!(
+        (at(f32::NAN, 1.0, 0.0), at(f32::INFINITY, 1.0, 0.0), at(f32::NAN, 1.0, 1.0)),
+        (0.0, 0.0, 0.0)
+    );
+}
+
+#[test]
+fn rays_along_a_disc_or_rectangle_do_not_see_it() {
+    let disc = Disc { centre: Vec3::Z * 5.0, radius: 2.0, low: Vec3::ONE, high: Vec3::ONE };
+    let sky = Background { discs: vec![disc], ..Background::default() };
+    let square = Emitter::facing(Vec3::Z * 5.0, Vec3::ZERO, 2.0, 2.0, Vec3::ONE);
+    for z in [0.0, 5.0, 9.0] {
+        for d in [Vec3::X, Vec3::Y, Vec3::new(1.0, 0.0, -0.0), Vec3::NEG_Z] {
+            let rays = packet(|| (Vec3::new(0.0, 0.0, z), d));
+            for spread in [0.0, 1e-3] {
+                if d.z < 0.0 && z > 5.0 {
+                    continue;
+                }
+                let (colour, id) = background(&sky, &rays, splat(spread));
+                assert_eq!((colour, id), (V3::ZERO, splat(NONE)), "disc from {z} along {d}");
+                let (light, hidden, seen) = emitters(&[square], &rays, splat(spread), splat(f32::INFINITY));
+                assert_eq!((light, hidden, seen), (V3::ZERO, F::ZERO, F::ZERO), "square from {z} along {d}");
+            }
+        }
+    }
+    let ahead = packet(|| (Vec3::ZERO, Vec3::Z));
+    assert_eq!(background(&sky, &ahead, F::ZERO), (V3::splat(Vec3::ONE), splat(NONE - 1.0)));
+    assert_eq!(emitters(&[square], &ahead, F::ZERO, splat(f32::INFINITY)).1, splat(1.0));
+    assert_eq!(emitters(&[square], &ahead, F::ZERO, splat(4.0)).1, F::ZERO, "behind a shape");
+}
