@@ -68,7 +68,13 @@ pub(super) fn fill(
         let shape = stage.scene.shape(first.id() as usize >> 2);
         stage.scene.materials[shape.material()].grain > 0.0
     };
-    let rung = if equal && !textured { Rung::Colour } else { stage.quality.rung };
+    // Where the colour itself runs smoothly the exact surface would show the same.
+    let smooth = equal || known.colour_error() <= stage.quality.tolerance * 0.25;
+    let rung = match (smooth, textured) {
+        (true, false) => Rung::Colour,
+        (true, true) => stage.quality.rung.min(Rung::Light),
+        (false, _) => stage.quality.rung,
+    };
     let scale = splat(1.0 / cell.size as f32);
     let shift = cell.size.trailing_zeros();
     let patch = match rung {

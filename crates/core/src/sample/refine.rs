@@ -183,6 +183,17 @@ impl Corners<'_> {
         !alike && !self.all(|s, first| contrast(s, first) <= limit)
     }
 
+    /// Largest error of the bilinear display value at the centre; without a centre sample, the
+    /// corners' span.
+    pub fn colour_error(&self) -> f32 {
+        let [a, b, c, d] = self.corners.map(|s| s.display());
+        let error = match self.centre {
+            Some(centre) => ((a + b + c + d) * 0.25 - centre.display()).abs(),
+            None => a.max(b).max(c.max(d)) - a.min(b).min(c.min(d)),
+        };
+        error.max_element()
+    }
+
     /// Whether the bilinear value at the centre is within tolerance of the true one; within a
     /// quarter of it where mirrors or glass show different things at the samples.
     ///
@@ -194,26 +205,15 @@ impl Corners<'_> {
         }
         let same = self.same_signature();
         let tolerance = stage.quality.tolerance * if same { 1.0 } else { 0.25 };
-        let corners = self.corners.map(|s| s.display());
-        let shown = |centre: Sample| {
-            let [a, b, c, d] = corners;
-            ((a + b + c + d) * 0.25 - centre.display()).abs().max_element()
-        };
         let error = match self.centre {
             Some(centre) if stage.exact_surface() => {
                 let [a, b, c, d] = self.corners.map(|s| s.indirect());
                 let predicted = stage.display.map(centre.direct() + (a + b + c + d) * 0.25);
                 let error = (predicted - centre.display()).abs().max_element();
                 // One corner in the mirror image of a lamp makes the mean white, right or wrong.
-                if same { error } else { error.max(shown(centre)) }
+                if same { error } else { error.max(self.colour_error()) }
             }
-            Some(centre) => shown(centre),
-            None => {
-                let [a, b, c, d] = corners;
-                let lo = a.min(b).min(c.min(d));
-                let hi = a.max(b).max(c.max(d));
-                (hi - lo).max_element()
-            }
+            _ => self.colour_error(),
         };
         error <= tolerance
     }
