@@ -7,7 +7,7 @@
 //! of seven taps (sigma 1.22 px), and the octaves are joined bilinearly with weights 0.35, 0.28,
 //! 0.22 and 0.15 (after Jimenez 2014, with fixed weights).
 
-use crate::math::lanes::{F, V3, splat};
+use crate::math::lanes::{F, V3, from_bits, splat};
 use crate::parallel;
 use crate::render::Stage;
 use crate::sample::{TILE, Tile};
@@ -167,10 +167,12 @@ fn bright(stage: &Stage, tiles: &[Tile]) -> Option<Glow> {
     let stride = glow.stride();
     let [r, g, b] = &mut glow.planes;
     let rows = r.chunks_mut(stride).zip(g.chunks_mut(stride)).zip(b.chunks_mut(stride));
+    let mean = 1.0 / (side * side) as f32;
     let any = AtomicBool::new(false);
     parallel::run(rows.enumerate().map(|(row, ((r, g), b))| {
         let any = &any;
         move || {
+            let mut lit = false;
             for y in (row * side..(row + 1) * side).take_while(|y| *y < h) {
                 for x in (0..w).step_by(8) {
                     let tile = &tiles[y / TILE * across + x / TILE];
@@ -185,18 +187,22 @@ fn bright(stage: &Stage, tiles: &[Tile]) -> Option<Glow> {
                     if !over.simd_gt(-knee).any() {
                         continue;
                     }
-                    any.store(true, Ordering::Relaxed);
+                    lit = true;
                     let soft = (over + knee).fast_max(F::ZERO).fast_min(knee + knee);
                     let share = over.fast_max(soft * soft * splat(0.5 / (2.0 * KNEE)));
-                    let share =
-                        (share / most.fast_max(splat(1e-6))).as_array().map(|s| s / (side * side) as f32);
-                    for (i, share) in share.into_iter().enumerate().take(w - x) {
-                        let to = PAD + ((x + i) >> step);
-                        r[to] += cr.as_array()[i] * share;
-                        g[to] += cg.as_array()[i] * share;
-                        b[to] += cb.as_array()[i] * share;
+                    // What the tile holds beyond the picture's right side doesn't count.
+                    let inside = from_bits((0xff_u32 >> (8 - (w - x).min(8))) as u8);
+                    let share = (share / most.fast_max(splat(1e-6)) * splat(mean)) & inside;
+                    for (line, c) in [(&mut *r, cr), (&mut *g, cg), (&mut *b, cb)] {
+                        let light = (c * share).to_array();
+                        for (sum, part) in line[PAD + (x >> step)..].iter_mut().zip(light.chunks(side)) {
+                            *sum += part.iter().sum::<f32>();
+                        }
                     }
                 }
+            }
+            if lit {
+                any.store(true, Ordering::Relaxed);
             }
         }
     }));
