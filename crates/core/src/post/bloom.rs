@@ -22,6 +22,8 @@ const LIMIT: f32 = 12.0;
 /// The seven taps of the blur: row six of Pascal's triangle.
 const TAPS: [f32; 7] =
     [1.0 / 64.0, 6.0 / 64.0, 15.0 / 64.0, 20.0 / 64.0, 15.0 / 64.0, 6.0 / 64.0, 1.0 / 64.0];
+/// Rows that are gathered as one piece of work: waking a thread costs more than a few rows.
+const ROWS: usize = 16;
 /// Values before and after each row that repeat its ends.
 const PAD: usize = 8;
 
@@ -166,14 +168,16 @@ fn bright(stage: &Stage, tiles: &[Tile]) -> Option<Glow> {
     let mut glow = Glow::new(w.div_ceil(side), h.div_ceil(side), side);
     let stride = glow.stride();
     let [r, g, b] = &mut glow.planes;
-    let rows = r.chunks_mut(stride).zip(g.chunks_mut(stride)).zip(b.chunks_mut(stride));
+    let some = stride * ROWS;
+    let strips = r.chunks_mut(some).zip(g.chunks_mut(some)).zip(b.chunks_mut(some));
     let mean = 1.0 / (side * side) as f32;
     let any = AtomicBool::new(false);
-    parallel::run(rows.enumerate().map(|(row, ((r, g), b))| {
+    parallel::run(strips.enumerate().map(|(strip, ((r, g), b))| {
         let any = &any;
         move || {
             let mut lit = false;
-            for y in (row * side..(row + 1) * side).take_while(|y| *y < h) {
+            for y in (strip * ROWS * side..).take(ROWS * side).take_while(|y| *y < h) {
+                let line = (y / side - strip * ROWS) * stride + PAD;
                 for x in (0..w).step_by(8) {
                     let tile = &tiles[y / TILE * across + x / TILE];
                     let at = (y % TILE) * TILE + x % TILE;
@@ -193,9 +197,10 @@ fn bright(stage: &Stage, tiles: &[Tile]) -> Option<Glow> {
                     // What the tile holds beyond the picture's right side doesn't count.
                     let inside = from_bits((0xff_u32 >> (8 - (w - x).min(8))) as u8);
                     let share = (share / most.fast_max(splat(1e-6)) * splat(mean)) & inside;
-                    for (line, c) in [(&mut *r, cr), (&mut *g, cg), (&mut *b, cb)] {
+                    for (plane, c) in [(&mut *r, cr), (&mut *g, cg), (&mut *b, cb)] {
                         let light = (c * share).to_array();
-                        for (sum, part) in line[PAD + (x >> step)..].iter_mut().zip(light.chunks(side)) {
+                        let sums = &mut plane[line + (x >> step)..];
+                        for (sum, part) in sums.iter_mut().zip(light.chunks_exact(side)) {
                             *sum += part.iter().sum::<f32>();
                         }
                     }
