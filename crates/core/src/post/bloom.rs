@@ -28,18 +28,26 @@ const ROWS: usize = 16;
 const PAD: usize = 8;
 
 /// A small picture of linear light: red, green and blue planes.
+#[derive(Default)]
 pub struct Glow {
     width: usize,
     height: usize,
     planes: [Vec<f32>; 3],
+    /// The planes blurred along the rows, on the way to both ways.
+    along: [Vec<f32>; 3],
     /// Side of its pixels, px of the picture: a power of two.
     scale: usize,
 }
 
 impl Glow {
-    fn new(width: usize, height: usize, scale: usize) -> Self {
-        let planes = std::array::from_fn(|_| vec![0.0; (width + 2 * PAD + 8) * height]);
-        Self { width, height, planes, scale }
+    /// Makes it black, of this size.
+    fn reset(&mut self, width: usize, height: usize, scale: usize) {
+        (self.width, self.height, self.scale) = (width, height, scale);
+        let length = self.stride() * height;
+        for plane in self.planes.iter_mut().chain(&mut self.along) {
+            plane.clear();
+            plane.resize(length, 0.0);
+        }
     }
 
     fn stride(&self) -> usize {
@@ -60,9 +68,8 @@ impl Glow {
     fn blur(&mut self) {
         self.pad();
         let (width, height, stride) = (self.width, self.height, self.stride());
-        parallel::run(self.planes.iter_mut().map(|plane| {
+        parallel::run(self.planes.iter_mut().zip(&mut self.along).map(|(plane, along)| {
             move || {
-                let mut along = vec![0.0; plane.len()];
                 for (out, row) in along.chunks_mut(stride).zip(plane.chunks(stride)) {
                     for x in (PAD..PAD + width).step_by(8) {
                         let sum = (0..7).fold(F::ZERO, |sum, k| sum + load(row, x + k - 3) * splat(TAPS[k]));
@@ -73,7 +80,7 @@ impl Glow {
                     for x in (PAD..PAD + width).step_by(8) {
                         let sum = (0..7).fold(F::ZERO, |sum, k| {
                             let y = (y + k).saturating_sub(3).min(height - 1);
-                            sum + load(&along, y * stride + x) * splat(TAPS[k])
+                            sum + load(along, y * stride + x) * splat(TAPS[k])
                         });
                         out[x..x + 8].copy_from_slice(sum.as_array());
                     }
@@ -84,8 +91,8 @@ impl Glow {
     }
 
     /// The next octave: squares of four averaged.
-    fn half(&self) -> Glow {
-        let mut half = Glow::new(self.width.div_ceil(2), self.height.div_ceil(2), self.scale * 2);
+    fn half(&self, half: &mut Glow) {
+        half.reset(self.width.div_ceil(2), self.height.div_ceil(2), self.scale * 2);
         let (stride, out_stride) = (self.stride(), half.stride());
         for (out, plane) in half.planes.iter_mut().zip(&self.planes) {
             for y in 0..half.height {
@@ -97,7 +104,25 @@ impl Glow {
                 }
             }
         }
-        half
+    }
+
+    /// Adds the octave below, times `weight`, to this one times `own`.
+    fn join(&mut self, below: &mut Glow, own: f32, weight: f32) {
+        // Seen from the octave above it, a pixel is two wide.
+        below.scale = 2;
+        let (width, stride) = (self.width, self.stride());
+        let mut line = Line::default();
+        for y in 0..self.height {
+            below.row(y, &mut line);
+            for x in (0..width).step_by(8) {
+                let add = line.at(x) * splat(weight);
+                for (plane, add) in self.planes.iter_mut().zip([add.x, add.y, add.z]) {
+                    let to = &mut plane[y * stride + PAD + x..][..8];
+                    to.copy_from_slice((load(to, 0) * splat(own) + add).as_array());
+                }
+            }
+        }
+        self.pad();
     }
 
     /// The two rows around row `y` of a picture that is `scale` times as large, joined linearly,
@@ -157,15 +182,15 @@ impl Line {
     }
 }
 
-/// The light over the threshold, as the first octave; none if there is no such light.
-fn bright(stage: &Stage, tiles: &[Tile]) -> Option<Glow> {
+/// Gathers the light over the threshold in the first octave; false if there is no such light.
+fn bright(stage: &Stage, tiles: &[Tile], glow: &mut Glow) -> bool {
     let grade = &stage.scene.grade;
     // At most eight, so that eight pixels in a row always lie on the columns in the same way.
     let step = (stage.height / LINES).clamp(1, 8).ilog2();
     let side = 1_usize << step;
     let (w, h) = (stage.width as usize, stage.height as usize);
     let across = w.div_ceil(TILE);
-    let mut glow = Glow::new(w.div_ceil(side), h.div_ceil(side), side);
+    glow.reset(w.div_ceil(side), h.div_ceil(side), side);
     let stride = glow.stride();
     let [r, g, b] = &mut glow.planes;
     let some = stride * ROWS;
@@ -211,43 +236,34 @@ fn bright(stage: &Stage, tiles: &[Tile]) -> Option<Glow> {
             }
         }
     }));
-    any.into_inner().then_some(glow)
+    any.into_inner()
 }
 
-/// The glow to add to the exposed picture, if there is any.
-pub fn bloom(stage: &Stage, tiles: &[Tile]) -> Option<Glow> {
-    let amount = stage.scene.grade.bloom;
-    if amount <= 0.0 {
-        return None;
-    }
-    let mut octaves = vec![bright(stage, tiles)?];
-    for level in 0..WEIGHTS.len() {
-        octaves[level].blur();
-        if level + 1 < WEIGHTS.len() {
-            let next = octaves[level].half();
-            octaves.push(next);
+/// The octaves, which live from frame to frame.
+#[derive(Default)]
+pub struct Bloom([Glow; WEIGHTS.len()]);
+
+impl Bloom {
+    /// The glow to add to the exposed picture, if there is any.
+    pub fn glow(&mut self, stage: &Stage, tiles: &[Tile]) -> Option<&Glow> {
+        let amount = stage.scene.grade.bloom;
+        if amount <= 0.0 || !bright(stage, tiles, &mut self.0[0]) {
+            return None;
         }
-    }
-    // From the smallest up, each octave takes in the one below it at its own resolution.
-    let mut sum = octaves.pop()?;
-    let mut weight = WEIGHTS[WEIGHTS.len() - 1] * amount;
-    let mut line = Line::default();
-    for (mut octave, own) in octaves.into_iter().zip(WEIGHTS).rev() {
-        // Seen from the octave above it, a pixel is two wide.
-        sum.scale = 2;
-        let stride = octave.stride();
-        for y in 0..octave.height {
-            sum.row(y, &mut line);
-            for x in (0..octave.width).step_by(8) {
-                let below = line.at(x) * splat(weight);
-                for (plane, add) in octave.planes.iter_mut().zip([below.x, below.y, below.z]) {
-                    let to = &mut plane[y * stride + PAD + x..][..8];
-                    to.copy_from_slice((load(to, 0) * splat(own * amount) + add).as_array());
-                }
+        let last = WEIGHTS.len() - 1;
+        for level in 0..=last {
+            let (upper, lower) = self.0.split_at_mut(level + 1);
+            upper[level].blur();
+            if let Some(next) = lower.first_mut() {
+                upper[level].half(next);
             }
         }
-        octave.pad();
-        (sum, weight) = (octave, 1.0);
+        // From the smallest up, each octave takes in the one below it at its own resolution.
+        for level in (0..last).rev() {
+            let (upper, lower) = self.0.split_at_mut(level + 1);
+            let weight = if level + 1 == last { WEIGHTS[last] * amount } else { 1.0 };
+            upper[level].join(&mut lower[0], WEIGHTS[level] * amount, weight);
+        }
+        self.0.first()
     }
-    Some(sum)
 }

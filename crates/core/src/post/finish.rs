@@ -4,7 +4,7 @@
 //! within 0.004. Grain: a hash of pixel and
 //! frame, which also hides banding. Pixels are quantised by floor(255 v + 1/2).
 
-use super::bloom::{Line, bloom};
+use super::bloom::{Bloom, Line};
 use crate::math::hash::{hash2, mix_x8, unit_x8};
 use crate::math::lanes::{F, LANE_INDEX, V3, splat, splat_u};
 use crate::parallel;
@@ -16,11 +16,10 @@ use glam::Vec3;
 const ROWS: usize = 16;
 
 /// Writes the tiles of frame `n` as 0RGB rows into `pixels`.
-pub fn finish(stage: &Stage, tiles: &[Tile], n: u64, pixels: &mut [u32]) {
+pub fn finish(stage: &Stage, tiles: &[Tile], bloom: &mut Bloom, n: u64, pixels: &mut [u32]) {
     let width = stage.width as usize;
     let across = width.div_ceil(TILE);
-    let glow = bloom(stage, tiles);
-    let glow = glow.as_ref();
+    let glow = bloom.glow(stage, tiles);
     parallel::run(pixels.chunks_mut(width * ROWS).enumerate().map(|(strip, rows)| {
         move || {
             let mut line = Line::default();

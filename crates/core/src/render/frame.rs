@@ -2,6 +2,7 @@
 
 use super::Stage;
 use crate::counters::Counters;
+use crate::post::Bloom;
 use crate::quality::Quality;
 use crate::sample::{Borders, Scratch, TILE, Tile, refine, smooth_edges};
 use crate::scene::Scene;
@@ -28,6 +29,7 @@ impl Pool {
 pub struct Renderer {
     tiles: Vec<Tile>,
     scratch: Pool,
+    bloom: Bloom,
     /// What the last frame did; all 0 without the feature `counters`.
     pub counters: Counters,
 }
@@ -77,6 +79,6 @@ impl Renderer {
         for counters in found.iter().map(|f| &f.1).chain(&more) {
             self.counters.merge(counters);
         }
-        post::finish(&stage, &self.tiles, n, pixels);
+        post::finish(&stage, &self.tiles, &mut self.bloom, n, pixels);
     }
 }
