@@ -43,31 +43,49 @@ pub fn shafts(scene: &Scene, lamp: &Lamp) -> Vec<Shaft> {
         .collect()
 }
 
-/// Where points lie that may be in shadow.
-pub enum Region {
-    /// Anywhere in a ball: middle and radius, world.
-    Ball(Vec3, f32),
-    /// Within a distance of the hull of four points, world.
-    Patch([Vec3; 4], f32),
+/// Where points lie that may be in shadow: within a distance of the hull of some corners.
+pub struct Region {
+    corners: [Vec3; 8],
+    count: usize,
+    slack: f32,
+    /// A ball around all of it.
+    centre: Vec3,
+    radius: f32,
 }
 
 impl Region {
-    /// Middle and radius of a ball around the region.
-    fn ball(&self) -> (Vec3, f32) {
-        match *self {
-            Region::Ball(centre, radius) => (centre, radius),
-            Region::Patch([a, b, c, d], slack) => {
-                let centre = (a + b + c + d) * 0.25;
-                let r2 = [a, b, c, d].into_iter().fold(0.0_f32, |m, p| m.max((p - centre).length_squared()));
-                (centre, r2.sqrt() + slack)
-            }
-        }
+    fn new(corners: &[Vec3], slack: f32) -> Self {
+        let centre = corners.iter().sum::<Vec3>() / corners.len() as f32;
+        let r2 = corners.iter().fold(0.0_f32, |m, p| m.max((p - centre).length_squared()));
+        let mut own = [centre; 8];
+        own[..corners.len()].copy_from_slice(corners);
+        Self { corners: own, count: corners.len(), slack, centre, radius: r2.sqrt() + slack }
+    }
+
+    /// A ball, world.
+    pub fn ball(centre: Vec3, radius: f32) -> Self {
+        Self::new(&[centre], radius)
+    }
+
+    /// Within `slack` of the hull of four points, world.
+    pub fn patch(corners: &[Vec3; 4], slack: f32) -> Self {
+        Self::new(corners, slack)
+    }
+
+    /// Within `slack` of a box, world.
+    pub fn cuboid(lo: Vec3, hi: Vec3, slack: f32) -> Self {
+        let corner = |i: usize| {
+            let pick = |bit: usize, lo: f32, hi: f32| if i & bit == 0 { lo } else { hi };
+            Vec3::new(pick(1, lo.x, hi.x), pick(2, lo.y, hi.y), pick(4, lo.z, hi.z))
+        };
+        Self::new(&std::array::from_fn::<_, 8, _>(corner), slack)
     }
 }
 
 impl Shaft {
     /// Whether the shape may lie between the lamp and some point of the region.
-    fn may_hide(&self, shape: Shape, region: &Region, (centre, radius): (Vec3, f32)) -> bool {
+    fn may_hide(&self, shape: Shape, region: &Region) -> bool {
+        let Region { centre, radius, .. } = *region;
         let plane = match shape {
             Shape::Plane(p) => Some((p.point, p.normal)),
             Shape::Triangle(t) => {
@@ -92,10 +110,12 @@ impl Shaft {
         if farthest < self.dop.near {
             return false;
         }
-        let meets = match region {
-            Region::Ball(..) => self.dop.meets_hull(&[c], radius),
-            Region::Patch(points, slack) => self.dop.meets_hull(&points.map(|p| self.view.local(p)), *slack),
-        };
+        let mut corners = region.corners;
+        let corners = &mut corners[..region.count];
+        for p in corners.iter_mut() {
+            *p = self.view.local(*p);
+        }
+        let meets = self.dop.meets_hull(corners, region.slack);
         if let (true, Shape::Sphere(s)) = (meets, shape) {
             let distance = c.length();
             let reach = radius / (distance - radius).max(1e-6);
@@ -113,7 +133,6 @@ impl Shaft {
 /// shadow the side of itself that faces the lamp, and points that face away are not asked about.
 #[inline(never)]
 pub fn occluders(scene: &Scene, shafts: &[Shaft], among: u64, own: Option<usize>, region: &Region) -> u64 {
-    let ball = region.ball();
     let mut mask = 0;
     for (i, shaft) in shafts.iter().enumerate() {
         if among >> (i & 63) & 1 == 0 {
@@ -121,7 +140,7 @@ pub fn occluders(scene: &Scene, shafts: &[Shaft], among: u64, own: Option<usize>
         }
         let shape = scene.shape(i);
         let convex = matches!(shape, Shape::Sphere(_) | Shape::Plane(_) | Shape::Triangle(_));
-        if !(convex && own == Some(i)) && shaft.may_hide(shape, region, ball) {
+        if !(convex && own == Some(i)) && shaft.may_hide(shape, region) {
             mask |= 1 << (i & 63);
         }
     }

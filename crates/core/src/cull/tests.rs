@@ -157,7 +157,7 @@ fn shapes_that_cast_a_shadow_are_among_the_candidates() {
             let (t, id) = hits(&scene, &rays);
             let slack = 4e-6 * (hub.length() + size + position.length());
             let region =
-                if case & 1 == 0 { Region::Patch(corners, slack) } else { Region::Ball(hub, size + slack) };
+                if case & 1 == 0 { Region::patch(&corners, slack) } else { Region::ball(hub, size + slack) };
             let kept = occluders(&scene, &shafts, 1, None, &region) & 1 == 1;
             culled += u32::from(!kept);
             for lane in 0..8 {

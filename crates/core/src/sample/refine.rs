@@ -136,7 +136,8 @@ fn shadow_casters(stage: &Stage, samples: &Samples) -> [u64; MAX_LAMPS] {
         || (0..samples.0.len() * 8).map(|i| samples.get(i)).filter(|s| s.id() >= 0.0).map(|s| s.point());
     let Some(some) = hits().next() else { return masks };
     let (lo, hi) = hits().fold((some, some), |(lo, hi), p| (lo.min(p), hi.max(p)));
-    let region = Region::Ball((lo + hi) * 0.5, (hi - lo).length() * 0.5);
+    // Curved patches bulge a little out of the box of their corners.
+    let region = Region::cuboid(lo, hi, 0.02 * (hi - lo).length());
     for (mask, shafts) in masks.iter_mut().zip(&stage.shafts) {
         *mask = occluders(stage.scene, shafts, u64::MAX, None, &region);
     }
@@ -246,7 +247,7 @@ impl Surroundings {
         // Between the corners a curved surface bulges out of their hull.
         let flat = matches!(stage.scene.shape(own), Shape::Plane(_) | Shape::Triangle(_));
         let across = (points[3] - points[0]).length().max((points[2] - points[1]).length());
-        let region = Region::Patch(points, if flat { 0.0 } else { 0.1 * across });
+        let region = Region::patch(&points, if flat { 0.0 } else { 0.1 * across });
         let material = &stage.scene.materials[stage.scene.shape(own).material()];
         for (lamp, shafts) in stage.shafts.iter().enumerate() {
             let position = stage.lamps[lamp].position;

@@ -31,22 +31,31 @@ pub struct Scratch {
     occluders: Boxes,
 }
 
-/// Bounds of the hit points of each shape in a list of rays.
+/// Bounds of the hit points of each shape in a list of rays, lane by lane.
 #[derive(Default)]
-struct Boxes(Vec<(usize, Vec3, Vec3)>);
+struct Boxes(Vec<(f32, V3, V3)>);
 
 impl Boxes {
     /// Adds the points of a packet's hits.
     fn add(&mut self, points: V3, ids: F) {
+        // The part of the shape makes no difference.
+        let shapes = (ids * splat(0.25)).floor();
         let mut todo = ids.simd_ge(F::ZERO).to_bitmask();
         while todo != 0 {
-            let lane = todo.trailing_zeros() as usize;
-            todo &= todo - 1;
-            let (shape, p) = (ids.as_array()[lane] as usize >> 2, points.lane(lane));
-            match self.0.iter_mut().find(|b| b.0 == shape) {
-                Some((_, lo, hi)) => (*lo, *hi) = (lo.min(p), hi.max(p)),
-                None => self.0.push((shape, p, p)),
+            let shape = shapes.as_array()[todo.trailing_zeros() as usize];
+            let own = shapes.simd_eq(splat(shape));
+            todo &= !own.to_bitmask();
+            let found = self.0.iter().position(|b| b.0 == shape);
+            let at = found.unwrap_or(self.0.len());
+            if found.is_none() {
+                let (lo, hi) = (splat(f32::INFINITY), splat(f32::NEG_INFINITY));
+                self.0.push((shape, V3::new(lo, lo, lo), V3::new(hi, hi, hi)));
             }
+            let (_, lo, hi) = &mut self.0[at];
+            let low = |old: F, p: F| old.fast_min(own.select(p, old));
+            let high = |old: F, p: F| old.fast_max(own.select(p, old));
+            *lo = V3::new(low(lo.x, points.x), low(lo.y, points.y), low(lo.z, points.z));
+            *hi = V3::new(high(hi.x, points.x), high(hi.y, points.y), high(hi.z, points.z));
         }
     }
 
@@ -55,12 +64,12 @@ impl Boxes {
         let mut masks = [0; MAX_LAMPS];
         for (mask, shafts) in masks.iter_mut().zip(&stage.shafts) {
             for &(shape, lo, hi) in &self.0 {
-                // The points of secondary rays start a clearance off the surface.
-                let (centre, radius) = ((lo + hi) * 0.5, (hi - lo).length() * 0.5);
-                let reach = radius + centre.length() + stage.scene.camera.position.length();
-                let slack = 4e-6 * reach;
-                let region = Region::Ball(centre, radius + slack);
-                *mask |= occluders(stage.scene, shafts, !*mask, Some(shape), &region);
+                let fold = |v: V3, f: fn(Vec3, Vec3) -> Vec3| (1..8).fold(v.lane(0), |m, i| f(m, v.lane(i)));
+                let (lo, hi) = (fold(lo, Vec3::min), fold(hi, Vec3::max));
+                // Shadow rays start at the points as put back onto the surface, a clearance off.
+                let reach = lo.abs().max(hi.abs()).length() + stage.scene.camera.position.length();
+                let region = Region::cuboid(lo, hi, 4e-6 * reach);
+                *mask |= occluders(stage.scene, shafts, !*mask, Some(shape as usize), &region);
             }
         }
         masks
