@@ -7,7 +7,7 @@ use luc_core::math::scalar::sin_cos;
 use luc_core::scene::*;
 
 /// Bearing of the camera, degrees over seconds.
-const BEARING: [Key; 2] = [key(0.0, 36.0, Ease::Smooth), key(32.0, -34.0, Ease::Step)];
+const BEARING: [Key; 2] = [key(0.0, 49.0, Ease::Smooth), key(32.0, -21.0, Ease::Step)];
 
 /// Share of the picture that shows how it was sampled: a wipe of one beat, 4 s before the end.
 const OVERLAY: [Key; 2] = [key(28.0, 0.0, Ease::Linear), key(28.5, 1.0, Ease::Step)];

@@ -2,55 +2,60 @@
 //!
 //! Without the feature `counters` the struct is empty and every call vanishes.
 
-/// What is counted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(usize)]
-#[allow(missing_docs)]
-pub enum Counter {
-    PrimaryRays,
-    ReflectedRays,
-    RefractedRays,
-    ShadowRays,
-    ShapeTests,
-    LightEvaluations,
-    KnownSurfaces,
-    Traced,
-    Interpolated,
-    Filled,
-    EdgeSamples,
-    FogSegments,
+/// Declares the counters once: names for code, and words for people.
+macro_rules! counters {
+    ($($name:ident $words:literal,)*) => {
+        /// What is counted.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[repr(usize)]
+        #[allow(missing_docs, reason = "the words in ALL say it")]
+        pub enum Counter { $($name,)* }
+
+        impl Counter {
+            /// All counters in order, with what they count in words.
+            pub const ALL: [(Counter, &str); [$($words,)*].len()] = [$((Counter::$name, $words),)*];
+        }
+    };
 }
 
-/// Number of counters.
-pub const COUNTERS: usize = 12;
-
-/// Names of the counters, in order.
-pub const NAMES: [&str; COUNTERS] = [
-    "primary rays",
-    "reflected rays",
-    "refracted rays",
-    "shadow rays",
-    "shape tests",
-    "light evaluations",
-    "known surfaces",
-    "pixels traced",
-    "pixels interpolated",
-    "pixels filled",
-    "edge samples",
-    "fog segments",
-];
+counters! {
+    PrimaryRays "primary rays",
+    ReflectedRays "reflected rays",
+    RefractedRays "refracted rays",
+    ShadowRays "shadow rays",
+    SphereTests "tests of spheres",
+    PlaneTests "tests of planes",
+    CylinderTests "tests of cylinders",
+    ConeTests "tests of cones",
+    TriangleTests "tests of triangles",
+    EmitterTests "tests of emitters",
+    DiscTests "tests of discs",
+    Glows "glows in the sky",
+    LightEvaluations "light evaluations",
+    Phong "Phong highlights",
+    CookTorrance "Cook-Torrance highlights",
+    TextureLookups "texture lookups",
+    FogSegments "fog segments",
+    KnownSurfaces "known surfaces",
+    Traced "pixels traced",
+    Interpolated "pixels interpolated",
+    Filled "pixels filled",
+    EdgeSamples "edge samples",
+    BloomPasses "bloom passes",
+    OverlayPixels "overlay pixels",
+}
 
 /// A set of counts; sums are exact, so they do not depend on threads.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counters {
     #[cfg(feature = "counters")]
-    counts: [u64; COUNTERS],
+    counts: [u64; Counter::ALL.len()],
 }
 
 impl Counters {
     /// Adds `n` to a count.
     #[inline(always)]
-    pub fn add(&mut self, counter: Counter, n: u32) {
+    pub fn add(&mut self, counter: Counter, n: usize) {
         #[cfg(feature = "counters")]
         {
             self.counts[counter as usize] += n as u64;

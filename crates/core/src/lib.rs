@@ -34,6 +34,7 @@ pub mod cull;
 pub mod math;
 pub mod output;
 pub mod parallel;
+pub mod plan;
 pub mod post;
 pub mod quality;
 pub mod render;

@@ -1,26 +1,11 @@
 //! `lab stats`: one frame's counters, time and error.
 
 use luc::show;
-use luc_core::counters::{COUNTERS, Counter, Counters, NAMES};
+use luc_core::counters::{Counter, Counters};
+use luc_core::plan;
 use luc_core::quality::Quality;
 use luc_core::render::Renderer;
 use std::time::Instant;
-
-/// Counters in the order of their names.
-const ALL: [Counter; COUNTERS] = [
-    Counter::PrimaryRays,
-    Counter::ReflectedRays,
-    Counter::RefractedRays,
-    Counter::ShadowRays,
-    Counter::ShapeTests,
-    Counter::LightEvaluations,
-    Counter::KnownSurfaces,
-    Counter::Traced,
-    Counter::Interpolated,
-    Counter::Filled,
-    Counter::EdgeSamples,
-    Counter::FogSegments,
-];
 
 /// Passes over a frame whose median time is reported.
 const PASSES: usize = 9;
@@ -63,11 +48,14 @@ pub fn run(args: &[String]) -> Result<(), String> {
 
     let (adaptive, counters, time) = render(n, size, &quality);
     let (full, full_counters, full_time) = render(n, size, &quality.every_pixel());
-    println!("{:>20} {:>12} {:>12}", "", "adaptive", "every pixel");
-    for (counter, name) in ALL.into_iter().zip(NAMES) {
-        println!("{name:>20} {:>12} {:>12}", counters.get(counter), full_counters.get(counter));
+    println!("{:>24} {:>12} {:>12}", "", "adaptive", "every pixel");
+    for warning in plan::warnings(&show::scene(n), &quality) {
+        println!("warning: {warning}");
     }
-    println!("{:>20} {time:>12.2} {full_time:>12.2}", "ms");
-    println!("{:>20} {:>12.2}", "dB", psnr(&adaptive, &full));
+    for (counter, name) in Counter::ALL {
+        println!("{name:>24} {:>12} {:>12}", counters.get(counter), full_counters.get(counter));
+    }
+    println!("{:>24} {time:>12.2} {full_time:>12.2}", "ms");
+    println!("{:>24} {:>12.2}", "dB", psnr(&adaptive, &full));
     Ok(())
 }

@@ -5,6 +5,7 @@
 //! frame, which also hides banding. Pixels are quantised by floor(255 v + 1/2).
 
 use super::bloom::{Bloom, Line};
+use crate::counters::{Counter, Counters};
 use crate::math::hash::{hash2, mix_x8, unit_x8};
 use crate::math::lanes::{F, LANE_INDEX, V3, splat, splat_u};
 use crate::parallel;
@@ -15,11 +16,15 @@ use glam::Vec3;
 /// Rows that are finished as one piece of work.
 const ROWS: usize = 16;
 
-/// Writes the tiles of frame `n` as 0RGB rows into `pixels`.
-pub fn finish(stage: &Stage, tiles: &[Tile], bloom: &mut Bloom, n: u64, pixels: &mut [u32]) {
+/// Writes the tiles of frame `n` as 0RGB rows into `pixels`; returns what that took.
+pub fn finish(stage: &Stage, tiles: &[Tile], bloom: &mut Bloom, n: u64, pixels: &mut [u32]) -> Counters {
     let width = stage.width as usize;
     let across = width.div_ceil(TILE);
     let glow = bloom.glow(stage, tiles);
+    let mut counters = Counters::default();
+    counters.add(Counter::BloomPasses, glow.is_some() as usize);
+    let painted = (stage.scene.overlay * stage.width as f32) as usize;
+    counters.add(Counter::OverlayPixels, painted * stage.height as usize);
     parallel::run(pixels.chunks_mut(width * ROWS).enumerate().map(|(strip, rows)| {
         move || {
             let mut line = Line::default();
@@ -35,6 +40,7 @@ pub fn finish(stage: &Stage, tiles: &[Tile], bloom: &mut Bloom, n: u64, pixels: 
             }
         }
     }));
+    counters
 }
 
 /// Finishes the row `y` of the picture within one tile, from pixel `x` on.

@@ -79,6 +79,6 @@ impl Renderer {
         for counters in found.iter().map(|f| &f.1).chain(&more) {
             self.counters.merge(counters);
         }
-        post::finish(&stage, &self.tiles, &mut self.bloom, n, pixels);
+        self.counters.merge(&post::finish(&stage, &self.tiles, &mut self.bloom, n, pixels));
     }
 }

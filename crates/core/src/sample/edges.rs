@@ -69,7 +69,7 @@ pub fn smooth_edges(
         }
         scratch.samples.0.clear();
         trace(stage, scratch, &positions, candidates);
-        scratch.counters.add(Counter::EdgeSamples, positions.len() as u32);
+        scratch.counters.add(Counter::EdgeSamples, positions.len());
         let mut next = 0;
         for &(x, y, count) in batch {
             let more = (next..).take(count as usize).map(|i| scratch.samples.get(i).colour());

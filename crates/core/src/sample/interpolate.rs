@@ -61,7 +61,7 @@ pub(super) fn fill(
     let kind = if equal { Kind::Filled } else { Kind::Interpolated };
     let counter = if equal { Counter::Filled } else { Counter::Interpolated };
     let count = cell.size * cell.size;
-    counters.add(counter, count as u32);
+    counters.add(counter, count);
     let record = Record::new(kind, cell.size);
 
     let textured = first.id() >= 0.0 && {
@@ -139,6 +139,7 @@ fn albedo(stage: &Stage, first: Sample, px: F, py: F, counters: &mut Counters) -
     counters.add(Counter::KnownSurfaces, 8);
     let (rays, t) = meet(stage, first, px, py);
     let s = surface(stage.scene, &rays, t, splat(first.id()), splat(stage.pixel));
+    counters.add(Counter::TextureLookups, s.textured());
     s.colour(Channel::Colour)
 }
 
@@ -150,9 +151,12 @@ fn known_surface(stage: &Stage, first: Sample, px: F, py: F, counters: &mut Coun
     let (rays, t) = meet(stage, first, px, py);
     let spread = splat(stage.pixel);
     let light = if first.id() <= NONE {
+        counters.add(Counter::DiscTests, 8 * stage.scene.background.discs.len());
+        counters.add(Counter::Glows, 8 * stage.scene.background.glows.len());
         shade::background(&stage.scene.background, &rays, spread).0
     } else {
         let s = surface(stage.scene, &rays, t, splat(first.id()), spread);
+        counters.add(Counter::TextureLookups, s.textured());
         let mut codes = first.codes();
         let view = -rays.direction;
         let all = F::ZERO.simd_gt(splat(-1.0));

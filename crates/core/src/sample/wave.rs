@@ -90,7 +90,7 @@ const CULL_FROM: usize = 6;
 #[inline(never)]
 pub fn trace(stage: &Stage, scratch: &mut Scratch, positions: &[Position], candidates: u64) -> usize {
     let first = scratch.samples.0.len();
-    scratch.counters.add(Counter::PrimaryRays, positions.len() as u32);
+    scratch.counters.add(Counter::PrimaryRays, positions.len());
     scratch.rays.clear();
     scratch.rays.count = positions.len();
     for (k, eight) in positions.chunks(8).enumerate() {
@@ -207,6 +207,7 @@ fn shade_packet(
         weight = weight * through;
     }
     if level > 0 && !scene.emitters.is_empty() {
+        counters.add(Counter::EmitterTests, 8 * scene.emitters.len());
         let (shine, hidden, seen) = shade::emitters(&scene.emitters, rays, spread, hit.t);
         light += weight * shine;
         weight = weight * (F::ONE - hidden);
@@ -216,6 +217,8 @@ fn shade_packet(
     let solid = hit.id.simd_ge(F::ZERO);
     let mut id = hit.id;
     if !solid.all() {
+        counters.add(Counter::DiscTests, 8 * scene.background.discs.len());
+        counters.add(Counter::Glows, 8 * scene.background.glows.len());
         let (sky, seen) = shade::background(&scene.background, rays, spread);
         light += (weight * sky) & !solid;
         id = solid.select(id, seen);
@@ -249,6 +252,7 @@ fn shade_packet(
 
     let t = solid.select(hit.t, F::ZERO);
     let s = surface(scene, rays, t, solid.select(hit.id, splat(NONE)), spread);
+    counters.add(Counter::TextureLookups, s.textured());
     let view = -rays.direction;
     let trace = Visibility::Trace(shadows);
     let lit = shade::direct(stage, &s, view, solid, trace, &mut found.codes, counters);

@@ -130,7 +130,7 @@ pub fn direct(
         if let (Some(code), Visibility::Trace(candidates)) = (codes.get_mut(k), &visibility) {
             *code = zero;
             if candidates[k] != 0 && wanted.any() {
-                counters.add(Counter::ShadowRays, wanted.to_bitmask().count_ones());
+                counters.add(Counter::ShadowRays, wanted.to_bitmask().count_ones() as usize);
                 let rays = Rays8 { origin: start, direction: to_lamp };
                 let found = occlusion(stage.scene, &stage.bits, &rays, wanted, candidates[k], counters);
                 *code = found & wanted;
@@ -144,8 +144,14 @@ pub fn direct(
         counters.add(Counter::LightEvaluations, 8);
         let light = tinted(stage, lamp, code) * (lit & (reach / d2));
         let highlight = match stage.scene.shading {
-            Shading::Phong => phong(s, l, v, n_l),
-            Shading::CookTorrance => cook_torrance(s, l, v, n_l),
+            Shading::Phong => {
+                counters.add(Counter::Phong, 8);
+                phong(s, l, v, n_l)
+            }
+            Shading::CookTorrance => {
+                counters.add(Counter::CookTorrance, 8);
+                cook_torrance(s, l, v, n_l)
+            }
         };
         let hidden = if lamp.is_emitter { mirrors } else { zero };
         sum.highlight += (light * highlight) & !hidden;

@@ -1,7 +1,7 @@
 //! The nearest hit of eight rays among a scene's shapes.
 
 use super::Rays8;
-use crate::counters::{Counter, Counters};
+use crate::counters::Counters;
 use crate::math::lanes::{F, splat};
 use crate::scene::Scene;
 
@@ -29,8 +29,9 @@ pub fn nearest(scene: &Scene, rays: &Rays8, candidates: u64, counters: &mut Coun
         if candidates >> (index & 63) & 1 == 0 {
             continue;
         }
-        counters.add(Counter::ShapeTests, 8);
-        let (t, part) = scene.shape(index).span(rays).first();
+        let shape = scene.shape(index);
+        counters.add(shape.counter(), 8);
+        let (t, part) = shape.span(rays).first();
         let closer = t.simd_gt(F::ZERO) & t.simd_lt(best.t);
         best.t = closer.select(t, best.t);
         best.id = closer.select(splat(index as f32 * 4.0) + part, best.id);

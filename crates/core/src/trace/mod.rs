@@ -24,6 +24,7 @@ pub use sphere::sphere;
 pub use surface::{Surface, surface};
 pub use triangle::triangle;
 
+use crate::counters::Counter;
 use crate::math::lanes::{F, V3, splat};
 use crate::scene::{Cone, Cylinder, Plane, Scene, Sphere, Triangle};
 
@@ -123,6 +124,17 @@ impl Scene {
 }
 
 impl Shape<'_> {
+    /// The counter of tests against this kind of shape.
+    pub fn counter(&self) -> Counter {
+        match self {
+            Shape::Sphere(_) => Counter::SphereTests,
+            Shape::Plane(_) => Counter::PlaneTests,
+            Shape::Cylinder(_) => Counter::CylinderTests,
+            Shape::Cone(_) => Counter::ConeTests,
+            Shape::Triangle(_) => Counter::TriangleTests,
+        }
+    }
+
     /// Index of the shape's material.
     pub fn material(&self) -> usize {
         match self {

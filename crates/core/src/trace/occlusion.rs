@@ -1,7 +1,7 @@
 //! Whether light reaches a point: blocked by an opaque shape, coloured by transparent ones.
 
 use super::Rays8;
-use crate::counters::{Counter, Counters};
+use crate::counters::Counters;
 use crate::math::lanes::{F, splat};
 use crate::scene::Scene;
 
@@ -32,8 +32,9 @@ pub fn occlusion(
         if candidates >> (index & 63) & 1 == 0 {
             continue;
         }
-        counters.add(Counter::ShapeTests, 8);
-        let span = scene.shape(index).span(rays);
+        let shape = scene.shape(index);
+        counters.add(shape.counter(), 8);
+        let span = shape.span(rays);
         if bit > 0.0 {
             let crossed = span.exit.simd_gt(zero) & span.enter.simd_lt(end);
             code += crossed & splat(bit);

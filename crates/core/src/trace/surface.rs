@@ -33,6 +33,11 @@ impl Surface {
         self.material[channel as usize]
     }
 
+    /// Lanes whose albedo varies.
+    pub fn textured(&self) -> usize {
+        self.value(Channel::Grain).simd_gt(F::ZERO).to_bitmask().count_ones() as usize
+    }
+
     /// A colour of the material.
     #[inline(always)]
     pub fn colour(&self, channel: Channel) -> V3 {

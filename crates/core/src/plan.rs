@@ -1,0 +1,79 @@
+//! What a frame calls for, derived from its data and never declared by hand.
+//!
+//! The engine loops over lists, so a kind that is absent costs nothing; the plan names what is
+//! present, and the counter that moves when it is at work. A test renders every part of the show and
+//! demands 0 of all that its plan doesn't name and more than 0 of all that it names.
+
+use crate::counters::Counter;
+use crate::quality::{Quality, Rung};
+use crate::scene::{LightKind, Scene, Shading};
+
+/// The machinery that a frame calls for, as the counters that it moves.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Plan(Vec<Counter>);
+
+impl Plan {
+    /// What `scene` calls for at `quality`.
+    pub fn of(scene: &Scene, quality: &Quality) -> Plan {
+        let materials = || (0..scene.shape_count()).map(|i| &scene.materials[scene.shape(i).material()]);
+        let lamps = !scene.lights.is_empty() || !scene.emitters.is_empty();
+        let lit = lamps && materials().any(|m| m.diffuse > 0.0 || m.specular.max_element() > 0.0);
+        let chains = quality.depth > 0;
+        let mirrors = chains && materials().any(|m| m.reflection > 0.0 && m.f0.max_element() > 0.0);
+        let glass = chains && materials().any(|m| m.is_transparent());
+        let adaptive = quality.block > 1;
+        let textured = materials().any(|m| m.grain > 0.0);
+        let known = quality.rung == Rung::Surface || (quality.rung == Rung::Light && textured);
+        let calls = [
+            (Counter::PrimaryRays, true),
+            (Counter::SphereTests, !scene.spheres.is_empty()),
+            (Counter::PlaneTests, !scene.planes.is_empty()),
+            (Counter::CylinderTests, !scene.cylinders.is_empty()),
+            (Counter::ConeTests, !scene.cones.is_empty()),
+            (Counter::TriangleTests, !scene.triangles.is_empty()),
+            (Counter::ReflectedRays, mirrors),
+            (Counter::RefractedRays, glass),
+            (Counter::EmitterTests, (mirrors || glass) && !scene.emitters.is_empty()),
+            (Counter::DiscTests, !scene.background.discs.is_empty()),
+            (Counter::Glows, !scene.background.glows.is_empty()),
+            (Counter::ShadowRays, lit),
+            (Counter::LightEvaluations, lit),
+            (Counter::Phong, lit && scene.shading == Shading::Phong),
+            (Counter::CookTorrance, lit && scene.shading == Shading::CookTorrance),
+            (Counter::TextureLookups, textured),
+            (Counter::FogSegments, scene.fog.is_some()),
+            (Counter::KnownSurfaces, adaptive && known),
+            (Counter::Traced, !adaptive || quality.smallest <= 1),
+            (Counter::Interpolated, adaptive),
+            (Counter::EdgeSamples, quality.edge_samples.max(quality.samples) > 0),
+            (Counter::BloomPasses, scene.grade.bloom > 0.0),
+            (Counter::OverlayPixels, scene.overlay > 0.0),
+        ];
+        Plan(calls.into_iter().filter_map(|(call, called)| called.then_some(call)).collect())
+    }
+
+    /// Whether the frame calls for the machinery behind a counter.
+    pub fn names(&self, call: Counter) -> bool {
+        self.0.contains(&call)
+    }
+
+    /// Everything that is called for.
+    pub fn calls(&self) -> &[Counter] {
+        &self.0
+    }
+}
+
+/// Named faults of a scene: data that its quality or the engine's limits can't show.
+pub fn warnings(scene: &Scene, quality: &Quality) -> Vec<&'static str> {
+    let materials = || (0..scene.shape_count()).map(|i| &scene.materials[scene.shape(i).material()]);
+    let spot = |kind: LightKind| matches!(kind, LightKind::Spot { inner, outer, .. } if inner <= outer);
+    let faults = [
+        (quality.depth < 2 && materials().any(|m| m.is_transparent()), "glass needs a depth of two or more"),
+        (quality.depth < 1 && materials().any(|m| m.reflection > 0.0), "mirrors need a depth of one or more"),
+        (scene.lights.len() + scene.emitters.len() > 8, "lamps after the eighth cast no shadow"),
+        (materials().filter(|m| m.is_transparent()).count() > 23, "glass after the 23rd casts no shadow"),
+        (scene.lights.iter().any(|l| spot(l.kind)), "a spot's inner cone is wider than its outer one"),
+        (scene.background.stops.windows(2).any(|s| s[0].y >= s[1].y), "the sky's stops do not ascend"),
+    ];
+    faults.into_iter().filter_map(|(found, words)| found.then_some(words)).collect()
+}
