@@ -4,7 +4,7 @@
 //! and the compressed program. The launcher decodes the program into memory and starts it there with the arguments and the
 //! environment that it was given itself.
 //!
-//! - [`elf`] takes from the program what the system doesn't need.
+//! - `elf` takes from the program what the system doesn't need.
 //! - [`codec::filter`] turns relative operands into absolute addresses, which pack better.
 //! - [`encode`] compresses: context mixing ([`codec::model`], [`codec::cm`]), or LZMA
 //!   ([`codec::lzma`]), each decoded by the same source in the launcher.

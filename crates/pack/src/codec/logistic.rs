@@ -1,7 +1,7 @@
 //! The logistic domain, where probabilities are mixed, and the mixer.
 //!
 //! `stretch(p) = ln(p / (1 - p))`, and [`squash`] is its inverse. Added there, opinions count by
-//! their certainty. A [`Mixer`] is one neuron: the weighted sum of the stretched opinions,
+//! their certainty. A mixer is one neuron: the weighted sum of the stretched opinions,
 //! squashed; after each bit the weights move along `error * input`, which is the gradient of the
 //! bit's coding cost.
 //!

@@ -2,7 +2,7 @@
 //!
 //! Each of [`CONTEXTS`] looks at something else: the last bytes, or the parts of the current and
 //! the last instructions that the [`Walker`] knows. Under the hash of what it sees and of the
-//! bits of the byte so far it keeps a [`Slot`], which gives two opinions: how often the bit was a
+//! bits of the byte so far it keeps a slot, which gives two opinions: how often the bit was a
 //! one there, and, by a table that learns, what the pattern of ones and zeros there usually meant.
 //! A match model follows the longest repetition. Four mixers, each with a set of weights chosen
 //! by another selector, add the opinions up; their mean is corrected by two tables that learn how
