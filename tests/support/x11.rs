@@ -4,9 +4,10 @@
 //! window is sent by hand, over the display's socket, because no tool sends it.
 
 use super::{luc, require};
-use std::io::{BufRead, BufReader, Read, Write};
+use std::io::{Read, Write};
 use std::os::unix::net::UnixStream;
 use std::process::{Child, Command, Stdio};
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::{Duration, Instant};
 
 /// A virtual screen; gone with this value.
@@ -16,20 +17,39 @@ pub struct Screen {
 }
 
 impl Screen {
-    /// Starts Xvfb on a free display.
+    /// Starts Xvfb on a display of its own and waits until it answers.
+    ///
+    /// `-noreset`: a server that starts anew when its last client leaves refuses the next one meanwhile.
+    /// Numbers follow from the process, and a server that finds its number locked gives up. Left to choose
+    /// one, servers that start and end at the same time take each other's sockets away.
     pub fn new(width: u32, height: u32) -> Self {
+        static NEXT: AtomicU32 = AtomicU32::new(0);
         require(&["Xvfb", "xdotool", "xwd"]);
-        let screen = format!("{width}x{height}x24");
-        let mut xvfb = Command::new("Xvfb")
-            .args(["-displayfd", "1", "-screen", "0", &screen, "-nolisten", "tcp"])
-            .stdout(Stdio::piped())
-            .stderr(Stdio::null())
-            .spawn()
-            .expect("Xvfb starts");
-        let mut line = String::new();
-        BufReader::new(xvfb.stdout.take().unwrap()).read_line(&mut line).unwrap();
-        let number = line.trim().parse().expect("Xvfb tells its display");
-        Screen { xvfb, number }
+        let size = format!("{width}x{height}x24");
+        for _ in 0..20 {
+            let number = 1000 + (std::process::id() * 37 + NEXT.fetch_add(1, Ordering::Relaxed)) % 50_000;
+            let mut xvfb = Command::new("Xvfb")
+                .args([&format!(":{number}"), "-screen", "0", &size, "-nolisten", "tcp", "-noreset"])
+                .stdout(Stdio::null())
+                .stderr(Stdio::null())
+                .spawn()
+                .expect("Xvfb starts");
+            let start = Instant::now();
+            while xvfb.try_wait().unwrap().is_none() && start.elapsed() < Duration::from_secs(20) {
+                let answer = Command::new("xdotool")
+                    .arg("getdisplaygeometry")
+                    .env("DISPLAY", format!(":{number}"))
+                    .output()
+                    .expect("xdotool starts");
+                if answer.status.success() {
+                    return Screen { xvfb, number };
+                }
+                std::thread::sleep(Duration::from_millis(20));
+            }
+            let _ = xvfb.kill();
+            let _ = xvfb.wait();
+        }
+        panic!("no display of 20 came up");
     }
 
     /// Starts the player and waits for its window.
