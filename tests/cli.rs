@@ -271,8 +271,9 @@ mod linux {
         let dir = tempdir().unwrap();
         write(dir.path().join("old.ppm"), "old").unwrap();
         for name in ["new.ppm", "old.ppm"] {
-            // The limit on file sizes stands in for a disk that fills up while writing.
-            let script = "trap '' XFSZ; ulimit -f 8; exec \"$@\"";
+            // The limit on file sizes (256 kB, room for the unpacked program) stands in for a disk that
+            // fills up while writing.
+            let script = "trap '' XFSZ; ulimit -f 512; exec \"$@\"";
             let output = std::process::Command::new("sh")
                 .args(["-c", script, "sh"])
                 .arg(support::luc())
