@@ -1,8 +1,10 @@
 //! A trimmed view of the standard library's source.
 //!
-//! Links to everything, and one edited file: threads need not look themselves up, when they end,
-//! in the table of those that have a stack for reporting overflows. Without messages nothing is
-//! ever put there, but the table (a B-tree, 5 kB of code) would be linked.
+//! Links to everything, and two edited files. Threads need not look themselves up, when they end,
+//! in the table of those that have a stack for reporting overflows: without messages nothing is
+//! ever put there, but the table (a B-tree, 5 kB of code) would be linked. And a file that is
+//! opened in a senseless way is refused without words: an error with words can be printed, which
+//! brings the tables of printable characters along.
 //!
 //! Cargo takes the source from where the environment variable [`VARIABLE`] points, which its own
 //! tests use too. A compiler whose source looks different is used untrimmed; the intro is the
@@ -15,35 +17,61 @@ use std::path::{Path, PathBuf};
 /// The environment variable for cargo.
 pub const VARIABLE: &str = "__CARGO_TESTS_ONLY_SRC_ROOT";
 
-/// The file to edit, inside the directory `library`.
-const FILE: &str = "std/src/sys/pal/unix/stack_overflow.rs";
-const UNUSED: &str = "\n        delete_current_info();\n";
+/// An edited file, inside the directory `library`, and its new text; none if it isn't as expected.
+type Edit = (&'static str, fn(&str) -> Option<String>);
+
+const EDITS: [Edit; 2] = [
+    ("std/src/sys/pal/unix/stack_overflow.rs", |text| {
+        let unused = "\n        delete_current_info();\n";
+        (text.matches(unused).count() == 1).then(|| text.replacen(unused, "\n", 1))
+    }),
+    ("std/src/sys/fs/unix.rs", |text| {
+        // Up to the end of the text in the error's second place.
+        let start = "io::Error::new(\n                        io::ErrorKind::InvalidInput,\n                        \"";
+        let mut parts = text.split(start);
+        let mut edited = parts.next()?.to_owned();
+        for part in parts {
+            let (_, after) = part.split_once("access\",\n                    )")?;
+            edited.push_str("io::Error::from(io::ErrorKind::InvalidInput)");
+            edited.push_str(after);
+        }
+        (edited.len() < text.len()).then_some(edited)
+    }),
+];
 
 /// Makes the view in `output`, for the library's source in `library`; none if that is unknown.
 pub fn prepare(library: &Path, output: &Path) -> Result<Option<PathBuf>, Error> {
-    let file = library.join(FILE);
-    let text = std::fs::read_to_string(&file).map_err(Error::file(&file))?;
-    if text.matches(UNUSED).count() != 1 {
-        return Ok(None);
+    let mut edited = Vec::new();
+    for (name, edit) in EDITS {
+        let file = library.join(name);
+        let text = std::fs::read_to_string(&file).map_err(Error::file(&file))?;
+        let Some(text) = edit(&text) else { return Ok(None) };
+        edited.push((name, text));
     }
     let view = output.join("library");
-    let (mut from, mut to) = (library.to_owned(), view.clone());
-    for part in Path::new(FILE) {
-        link_all_but(&from, &to, Path::new(part))?;
-        from.push(part);
-        to.push(part);
+    for (name, text) in edited {
+        let (mut from, mut to) = (library.to_owned(), view.clone());
+        for part in Path::new(name) {
+            link_all(&from, &to)?;
+            from.push(part);
+            to.push(part);
+            if to.is_symlink() {
+                std::fs::remove_file(&to).map_err(Error::file(&to))?;
+            }
+        }
+        write_if_new(&to, text.as_bytes())?;
     }
-    write_if_new(&to, text.replacen(UNUSED, "\n", 1).as_bytes())?;
     Ok(Some(view))
 }
 
-/// Makes the directory `to`, with links to all that is in `from` but `own`.
-pub fn link_all_but(from: &Path, to: &Path, own: &Path) -> Result<(), Error> {
+/// Makes the directory `to`, with links to all that is in `from` and isn't there in its own right.
+fn link_all(from: &Path, to: &Path) -> Result<(), Error> {
     std::fs::create_dir_all(to).map_err(Error::file(to))?;
     for entry in std::fs::read_dir(from).map_err(Error::file(from))? {
         let entry = entry.map_err(Error::file(from))?;
-        if entry.file_name() != own {
-            link(&entry.path(), &to.join(entry.file_name()))?;
+        let place = to.join(entry.file_name());
+        if place.is_symlink() || !place.exists() {
+            link(&entry.path(), &place)?;
         }
     }
     Ok(())
