@@ -1,5 +1,5 @@
 //! What the suites share: the program under test and its output, pictures, reference frames.
-#![allow(dead_code)] // each suite uses a part of it
+#![allow(dead_code, reason = "each suite uses a part of it")]
 
 pub mod crossing;
 pub mod golden;

@@ -210,6 +210,7 @@ struct X11(UnixStream);
 
 impl X11 {
     fn connect(number: u32) -> Self {
+        // Where X11 puts the sockets of all local displays.
         let mut stream = UnixStream::connect(format!("/tmp/.X11-unix/X{number}")).unwrap();
         stream.write_all(&[b'l', 0, 11, 0, 0, 0, 0, 0, 0, 0, 0, 0]).unwrap(); // little endian, 11.0
         let mut head = [0; 8];

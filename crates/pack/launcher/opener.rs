@@ -12,9 +12,9 @@
 #![no_main]
 
 #[path = "../src/codec/mod.rs"]
-#[allow(dead_code)]
+#[allow(dead_code, reason = "each part of the launcher decodes with a part of it")]
 mod codec;
-#[allow(dead_code)]
+#[allow(dead_code, reason = "each part of the launcher uses a part of it")]
 mod system;
 
 use codec::checksum::crc32;

@@ -62,13 +62,13 @@ impl Boxes {
     /// Candidate occluders of each lamp for all the points.
     fn candidates(&self, stage: &Stage) -> [u64; MAX_LAMPS] {
         let mut masks = [0; MAX_LAMPS];
-        for (mask, shafts) in masks.iter_mut().zip(&stage.shafts) {
-            for &(shape, lo, hi) in &self.0 {
-                let fold = |v: V3, f: fn(Vec3, Vec3) -> Vec3| (1..8).fold(v.lane(0), |m, i| f(m, v.lane(i)));
-                let (lo, hi) = (fold(lo, Vec3::min), fold(hi, Vec3::max));
-                // Shadow rays start at the points as put back onto the surface, a clearance off.
-                let reach = lo.abs().max(hi.abs()).length() + stage.scene.camera.position.length();
-                let region = Region::cuboid(lo, hi, 4e-6 * reach);
+        for &(shape, lo, hi) in &self.0 {
+            let fold = |v: V3, f: fn(Vec3, Vec3) -> Vec3| (1..8).fold(v.lane(0), |m, i| f(m, v.lane(i)));
+            let (lo, hi) = (fold(lo, Vec3::min), fold(hi, Vec3::max));
+            // Shadow rays start at the points as put back onto the surface, a clearance off.
+            let reach = lo.abs().max(hi.abs()).length() + stage.scene.camera.position.length();
+            let region = Region::cuboid(lo, hi, 4e-6 * reach);
+            for (mask, shafts) in masks.iter_mut().zip(&stage.shafts) {
                 *mask |= occluders(stage.scene, shafts, !*mask, Some(shape as usize), &region);
             }
         }
@@ -85,10 +85,10 @@ const BLUR_GAIN: f32 = 1.2;
 const CULL_FROM: usize = 6;
 
 /// Traces one sample for each of `positions` (px, right and down from the picture's corner) and
-/// appends them to `scratch.samples`, from the start of a new block on; returns the index of the
-/// first. `candidates` must hold all shapes the first rays may hit.
+/// appends them to `scratch.samples`, from the start of a new block on. `candidates` must hold all
+/// shapes the first rays may hit.
 #[inline(never)]
-pub fn trace(stage: &Stage, scratch: &mut Scratch, positions: &[Position], candidates: u64) -> usize {
+pub fn trace(stage: &Stage, scratch: &mut Scratch, positions: &[Position], candidates: u64) {
     let first = scratch.samples.0.len();
     scratch.counters.add(Counter::PrimaryRays, positions.len());
     scratch.rays.clear();
@@ -117,7 +117,6 @@ pub fn trace(stage: &Stage, scratch: &mut Scratch, positions: &[Position], candi
     for block in &mut scratch.samples.0[first..] {
         block.display = stage.display.map8(block.colour);
     }
-    first * 8
 }
 
 /// A position in the picture, px from its left and upper edges.

@@ -1,5 +1,5 @@
 //! What the tests share: a scratch directory, a small program to pack, runs with a time limit.
-#![allow(dead_code)]
+#![allow(dead_code, reason = "each suite uses a part of it")]
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus, Stdio};

@@ -1,7 +1,6 @@
 //! Errors against the standard library in f64, edge values, lane independence, and the bits themselves.
 
-// The standard functions serve as the reference and never reach a pixel.
-#![allow(clippy::disallowed_methods)]
+#![allow(clippy::disallowed_methods, reason = "an oracle in f64 that never reaches a pixel")]
 
 use super::*;
 use crate::math::check::{Fingerprint, Worst, bits_spread, every_1009th, ulp_error};
