@@ -44,7 +44,7 @@ fn plain(part: &show::Part, frame: u64) -> Scene {
 fn both_parts_are_within_40_db_of_every_pixel_traced() {
     let quality = preset("high");
     let mut wrong = String::new();
-    for part in &show::PARTS {
+    for part in show::PARTS {
         for i in 0..10 {
             // Spread over the part, and in another phase of its motions each time.
             let frame = i * part.frames / 10 + 7 * i + 11;
@@ -217,7 +217,7 @@ fn paint(before: u32, after: u32) -> Option<Kind> {
 fn the_overlay_shows_how_each_pixel_was_got() {
     // Without additional samples of edges, which take pixels back out of filled cells.
     let quality = Quality { edge_samples: 0, ..preset("high") };
-    for part in &show::PARTS {
+    for part in show::PARTS {
         for frame in [11, 700, 1400] {
             let mut scene = plain(part, frame);
             (scene.grade.grain, scene.grade.vignette) = (0.0, 0.0);
@@ -250,7 +250,7 @@ fn the_overlay_shows_how_each_pixel_was_got() {
 #[test]
 fn the_overlay_wipes_from_the_left_and_spares_smoothed_edges() {
     let quality = preset("high");
-    for part in &show::PARTS {
+    for part in show::PARTS {
         let mut scene = plain(part, 333);
         (scene.grade.grain, scene.grade.vignette) = (0.0, 0.0);
         let (before, counters) = render(&scene, 333, SIZE, &quality);
@@ -286,7 +286,7 @@ const SMALL: (u32, u32) = (160, 90);
 #[test]
 fn every_preset_gives_finite_light() {
     for (name, quality) in Quality::PRESETS {
-        for part in &show::PARTS {
+        for part in show::PARTS {
             for frame in [0, 480, part.frames - 1] {
                 let (_, finite) = records(&plain(part, frame), SMALL, &quality);
                 let replay = golden::replay(part.name, frame, name, SMALL);
@@ -298,7 +298,7 @@ fn every_preset_gives_finite_light() {
 
 #[test]
 fn better_presets_are_no_worse() {
-    for part in &show::PARTS {
+    for part in show::PARTS {
         for frame in [200, 900, 1700] {
             let scene = plain(part, frame);
             let (reference, _) = render(&scene, frame, SMALL, &preset("reference"));

@@ -58,18 +58,18 @@ fn the_number_of_threads_changes_no_byte() {
 #[test]
 fn what_was_drawn_before_changes_no_byte() {
     let mut used = Renderer::default();
-    let gold = show::start(1);
+    let [mirror, gold] = ["mirror", "gold"].map(|part| golden::global(part, 0));
     // From part to part and back, larger and smaller, better and worse.
     let visits = [
-        (0, "high", (320, 180)),
+        (mirror, "high", (320, 180)),
         (gold + 1800, "high", (320, 180)),
-        (20, "draft", (97, 201)),
+        (mirror + 20, "draft", (97, 201)),
         (gold + 20, "ultra", (320, 180)),
-        (20, "high", (640, 360)),
+        (mirror + 20, "high", (640, 360)),
         (gold, "low", (1, 1)),
-        (495, "reference", (65, 63)),
+        (mirror + 495, "reference", (65, 63)),
         (gold + 1800, "medium", (320, 180)),
-        (0, "high", (320, 180)),
+        (mirror, "high", (320, 180)),
     ];
     for (i, (n, preset, size)) in visits.into_iter().enumerate() {
         let quality = Quality::named(preset).unwrap();
