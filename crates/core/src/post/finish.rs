@@ -7,7 +7,7 @@
 use super::bloom::{Bloom, Line};
 use crate::counters::{Counter, Counters};
 use crate::math::hash::{hash2, mix_x8, unit_x8};
-use crate::math::lanes::{F, LANE_INDEX, V3, splat, splat_u};
+use crate::math::lanes::{F, LANE_INDEX, RAMP, V3, load, splat, splat_u};
 use crate::parallel;
 use crate::render::Stage;
 use crate::sample::{Kind, TILE, Tile};
@@ -59,9 +59,8 @@ fn finish_row(
     let seed = splat_u(hash2(n as u32, 0));
     for (base, out) in row.chunks_mut(8).enumerate() {
         let at = (y % TILE) * TILE + base * 8;
-        let lanes = |plane: &[f32]| F::new(plane[at..at + 8].try_into().unwrap_or_default());
         let [r, g, b] = &tile.rgb;
-        let mut linear = V3 { x: lanes(r), y: lanes(g), z: lanes(b) };
+        let mut linear = V3 { x: load(&r[at..]), y: load(&g[at..]), z: load(&b[at..]) };
         let x = x + base * 8;
         if let Some(glow) = glow {
             linear += glow.at(x) * splat(1.0 / grade.exposure);
@@ -92,9 +91,6 @@ fn finish_row(
         out.copy_from_slice(&packed.as_array()[..count]);
     }
 }
-
-/// 0, 1, …, 7.
-const RAMP: F = F::new([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
 
 /// Colours of filled and interpolated pixels: #E0342B and #2D6BFF.
 const FILLED: Vec3 = Vec3::new(0.878, 0.204, 0.169);

@@ -4,7 +4,7 @@ use super::Stage;
 use crate::counters::Counters;
 use crate::post::Bloom;
 use crate::quality::Quality;
-use crate::sample::{Borders, Scratch, TILE, Tile, refine, smooth_edges};
+use crate::sample::{Borders, Scratch, TILE, Tile, beams, refine, smooth_edges};
 use crate::scene::Scene;
 use crate::{parallel, post};
 use std::sync::{Mutex, PoisonError};
@@ -71,6 +71,7 @@ impl Renderer {
             move || {
                 pool.with(|scratch| {
                     smooth_edges(stage, scratch, corner(i), tile, near);
+                    beams(stage, corner(i), tile, &mut scratch.counters);
                     *counters = scratch.counters;
                 });
             }

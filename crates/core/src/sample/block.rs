@@ -31,6 +31,8 @@ pub struct Block {
     pub point: V3,
     /// Shading normal there.
     pub normal: V3,
+    /// Node of a field that has most of the surface there.
+    pub node: F,
     /// Visibility of the lamps there.
     pub codes: Codes,
 }
@@ -102,6 +104,9 @@ impl<'a> Sample<'a> {
     }
     pub fn normal(self) -> Vec3 {
         self.block.normal.lane(self.lane)
+    }
+    pub fn node(self) -> f32 {
+        self.block.node.as_array()[self.lane]
     }
     pub fn code(self, lamp: usize) -> f32 {
         self.block.codes[lamp].as_array()[self.lane]

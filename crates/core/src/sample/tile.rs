@@ -57,6 +57,9 @@ pub struct Tile {
     pub rgb: [Vec<f32>; 3],
     /// How each pixel was got.
     pub record: Vec<Record>,
+    /// One over the depth of each pixel's surface along the view axis, 0 where there is none; empty
+    /// if the scene doesn't ask for it.
+    pub nearness: Vec<f32>,
     /// Bit x of word y: the pixel lies on an edge.
     pub edges: [u64; TILE],
 }
@@ -66,6 +69,7 @@ impl Default for Tile {
         Self {
             rgb: std::array::from_fn(|_| vec![0.0; TILE * TILE]),
             record: vec![Record::default(); TILE * TILE],
+            nearness: Vec::new(),
             edges: [0; TILE],
         }
     }
@@ -76,6 +80,13 @@ impl Tile {
     pub fn get(&self, x: usize, y: usize) -> Vec3 {
         let i = y * TILE + x;
         Vec3::new(self.rgb[0][i], self.rgb[1][i], self.rgb[2][i])
+    }
+
+    /// Notes the depth of the surface at (x, y), if that is asked for.
+    pub fn set_nearness(&mut self, x: usize, y: usize, nearness: f32) {
+        if let Some(place) = self.nearness.get_mut(y * TILE + x) {
+            *place = nearness;
+        }
     }
 
     /// Sets the pixel at (x, y).

@@ -9,8 +9,8 @@ use crate::counters::{Counter, Counters};
 use crate::math::lanes::{F, V3, splat};
 use crate::math::lanes_fn::{exp, pow};
 use crate::render::Stage;
-use crate::scene::{Channel, Shading};
-use crate::trace::{BLOCKED, Rays8, Surface, occlusion};
+use crate::scene::{Channel, Scene, Shading};
+use crate::trace::{BLOCKED, Rays8, Surface, ambient_share, occlusion};
 use glam::Vec3;
 
 /// Lamps that may cast shadows; those after them light without.
@@ -53,8 +53,19 @@ pub fn ambient(stage: &Stage, direction: V3) -> V3 {
 /// Adds the light from all around (by the normal's height) and the surface's own to that of the
 /// lamps; what a mirror takes away is missing from the diffuse part.
 #[inline(never)]
-pub fn local(stage: &Stage, s: &Surface, split: &Split, lit: Lit) -> Local {
-    let ambient = ambient(stage, s.normal);
+pub fn local(
+    stage: &Stage,
+    s: &Surface,
+    split: &Split,
+    lit: Lit,
+    active: F,
+    counters: &mut Counters,
+) -> Local {
+    let mut ambient = ambient(stage, s.normal);
+    if stage.scene.occlusion > 0.0 {
+        let Scene { fields, occlusion, .. } = stage.scene;
+        ambient = ambient * ambient_share(fields, *occlusion, s.point, s.normal, active, counters);
+    }
     let mirrored = split.reflectance * s.value(Channel::Reflection);
     let kept = (V3::splat(Vec3::ONE) - mirrored) * s.value(Channel::Diffuse);
     Local { irradiance: (lit.irradiance + ambient) * kept, rest: lit.highlight + s.colour(Channel::Emission) }
@@ -132,7 +143,15 @@ pub fn direct(
             if candidates[k] != 0 && wanted.any() {
                 counters.add(Counter::ShadowRays, wanted.to_bitmask().count_ones() as usize);
                 let rays = Rays8 { origin: start, direction: to_lamp };
-                let found = occlusion(stage.scene, &stage.bits, &rays, wanted, candidates[k], counters);
+                let found = occlusion(
+                    stage.scene,
+                    &stage.quality,
+                    &stage.bits,
+                    &rays,
+                    wanted,
+                    candidates[k],
+                    counters,
+                );
                 *code = found & wanted;
             }
         }
