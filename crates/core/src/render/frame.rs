@@ -2,6 +2,7 @@
 
 use super::Stage;
 use crate::counters::Counters;
+use crate::features;
 use crate::post::Bloom;
 use crate::quality::Quality;
 use crate::sample::{Borders, Scratch, TILE, Tile, beams, refine, smooth_edges};
@@ -71,7 +72,9 @@ impl Renderer {
             move || {
                 pool.with(|scratch| {
                     smooth_edges(stage, scratch, corner(i), tile, near);
-                    beams(stage, corner(i), tile, &mut scratch.counters);
+                    if features::BEAMS {
+                        beams(stage, corner(i), tile, &mut scratch.counters);
+                    }
                     *counters = scratch.counters;
                 });
             }

@@ -8,6 +8,7 @@ use super::block::{Block, Samples};
 use super::rays::{Packet, RayList};
 use crate::counters::{Counter, Counters};
 use crate::cull::{Region, occluders};
+use crate::features;
 use crate::math::hash::mix_x8;
 use crate::math::lanes::{F, U, V3, splat, splat_u};
 use crate::render::Stage;
@@ -210,7 +211,7 @@ fn shade_packet(
         light += weight * scattered;
         weight = weight * through;
     }
-    if level > 0 {
+    if features::BEAMS && level > 0 {
         // What the eye sees of them straight is added to the finished pixels.
         counters.add(Counter::Beams, 8 * scene.beams.len());
         for beam in &scene.beams {
@@ -265,11 +266,11 @@ fn shade_packet(
 
     let t = solid.select(hit.t, F::ZERO);
     let s = surface(scene, &stage.quality, rays, t, solid.select(hit.id, splat(NONE)), spread);
-    counters.add(Counter::TextureLookups, s.textured());
+    s.count(counters);
     let view = -rays.direction;
     let trace = Visibility::Trace(shadows);
     let lit = shade::direct(stage, &s, view, solid, trace, &mut found.codes, counters);
-    let split = shade::split(&s, rays.direction);
+    let split = shade::split(scene.shading, &s, rays.direction);
     let local = shade::local(stage, &s, &split, lit, solid, counters);
     let seen = weight & solid;
     found.albedo = s.colour(Channel::Colour);

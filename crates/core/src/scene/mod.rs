@@ -11,6 +11,7 @@ mod field;
 mod light;
 mod material;
 mod shapes;
+mod texture;
 mod track;
 
 pub use background::{Background, Disc, Glow, Stop};
@@ -20,6 +21,7 @@ pub use field::{Field, Form, Join, Node};
 pub use light::{Emitter, Light, LightKind};
 pub use material::{Channel, Fire, Material};
 pub use shapes::{Cone, Cylinder, Plane, Sphere, Triangle};
+pub use texture::{Pattern, Texture};
 pub use track::{Ease, Key, track};
 
 use glam::Vec3;
@@ -33,6 +35,9 @@ pub enum Shading {
     /// Lambert plus Schlick Fresnel, Beckmann distribution and the V-cavity geometry term:
     /// Cook and Torrance 1982.
     CookTorrance,
+    /// Lambert plus Schlick Fresnel, Trowbridge and Reitz's distribution and Smith's
+    /// height-correlated shadowing: Walter et al. 2007, Heitz 2014.
+    Ggx,
 }
 
 /// Constant in-scatter inside a box: `c exp(-density d) + colour (1 - exp(-density d))`.

@@ -5,6 +5,7 @@ mod beam;
 mod direct;
 mod fog;
 mod fresnel;
+mod ggx;
 mod lamps;
 
 pub use background::{background, emitters};

@@ -11,6 +11,7 @@ mod ramp;
 mod round;
 mod sphere;
 mod surface;
+mod texture;
 mod triangle;
 
 #[cfg(test)]
@@ -26,9 +27,11 @@ pub use ramp::ramp;
 pub use round::{cone, cylinder};
 pub use sphere::sphere;
 pub use surface::{Surface, surface};
+pub use texture::relief_within;
 pub use triangle::triangle;
 
 use crate::counters::{Counter, Counters};
+use crate::features;
 use crate::math::lanes::{F, V3, splat};
 use crate::quality::Quality;
 use crate::scene::{Cone, Cylinder, Field, Plane, Scene, Sphere, Triangle};
@@ -191,7 +194,8 @@ impl Shape<'_> {
             Shape::Cylinder(s) => cylinder(rays, s),
             Shape::Cone(s) => cone(rays, s),
             Shape::Triangle(s) => triangle(rays, s),
-            Shape::Field(s) => field(rays, s, limit, quality, counters),
+            Shape::Field(s) if features::FIELDS => field(rays, s, limit, quality, counters),
+            Shape::Field(_) => Span::MISS,
         }
     }
 }

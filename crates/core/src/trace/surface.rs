@@ -7,9 +7,11 @@
 
 use super::field::{Nodes, locate as on_field};
 use super::ramp::ramp;
+use super::texture::texture;
 use super::{Rays8, Shape};
+use crate::counters::{Counter, Counters};
+use crate::features;
 use crate::math::lanes::{F, V3, splat};
-use crate::math::noise::value_noise;
 use crate::quality::Quality;
 use crate::scene::{Channel, Field, Join, Material, Scene, Sphere};
 
@@ -40,9 +42,12 @@ impl Surface {
         self.material[channel as usize]
     }
 
-    /// Lanes whose albedo varies.
-    pub fn textured(&self) -> usize {
-        self.value(Channel::Grain).simd_gt(F::ZERO).to_bitmask().count_ones() as usize
+    /// Counts the patterns that were evaluated for these surfaces.
+    #[inline(always)]
+    pub fn count(&self, counters: &mut Counters) {
+        let lanes = |c| self.value(c).simd_gt(F::ZERO).to_bitmask().count_ones() as usize;
+        counters.add(Counter::TextureLookups, lanes(Channel::Grain));
+        counters.add(Counter::Bumps, lanes(Channel::Bump));
     }
 
     /// A colour of the material.
@@ -162,7 +167,7 @@ pub fn surface(scene: &Scene, quality: &Quality, rays: &Rays8, t: F, id: F, spre
         todo &= !mask.to_bitmask();
         let (index, part) = (lane_id as usize >> 2, lane_id as u32 & 3);
         let shape = scene.shape(index);
-        if let Shape::Field(field) = shape {
+        if let (true, Shape::Field(field)) = (features::FIELDS, shape) {
             let found = on_field(field, p, t * spread, rays.direction);
             s.point = V3::select(mask, found.point, s.point);
             s.outward = V3::select(mask, found.outward, s.outward);
@@ -188,7 +193,7 @@ pub fn surface(scene: &Scene, quality: &Quality, rays: &Rays8, t: F, id: F, spre
     }
     s.inside = s.outward.dot(rays.direction).simd_gt(F::ZERO);
     s.normal = V3::select(s.inside, -s.normal, s.normal);
-    grain(&mut s, t * spread);
+    texture(&mut s, rays.direction, t * spread);
     s
 }
 
@@ -225,20 +230,5 @@ fn burn(material: &Material, mask: F, s: &mut Surface) {
         {
             *lane = mask.select(value, *lane);
         }
-    }
-}
-
-/// Varies the albedo by a noise in world space, which fades as its cells get smaller than the
-/// footprint (`width`, world units).
-fn grain(s: &mut Surface, width: F) {
-    let amount = s.value(Channel::Grain);
-    if !amount.simd_gt(F::ZERO).any() {
-        return;
-    }
-    let scale = s.value(Channel::GrainScale);
-    let fade = (splat(2.0) - width * scale * splat(2.0)).fast_max(F::ZERO).fast_min(F::ONE);
-    let factor = F::ONE + amount * fade * value_noise(s.point * scale);
-    for channel in 0..3 {
-        s.material[channel] *= factor;
     }
 }
