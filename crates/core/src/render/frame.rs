@@ -9,6 +9,9 @@ use crate::scene::Scene;
 use crate::{parallel, post};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+/// Work on the tile whose upper left pixel is given.
+type Pass = fn(&Stage, &mut Scratch, (usize, usize), &mut Tile);
+
 /// Buffers of the threads at work, handed out and taken back.
 #[derive(Default)]
 struct Pool(Mutex<Vec<Scratch>>);
@@ -54,7 +57,7 @@ impl Renderer {
         let down = (height as usize).div_ceil(TILE);
         self.tiles.resize_with(across * down, Tile::default);
         let pool = &self.scratch;
-        let passes: [fn(&Stage, &mut Scratch, (usize, usize), &mut Tile); 2] = [refine, smooth_edges];
+        let passes: [Pass; 2] = [refine, smooth_edges];
         self.counters = Counters::default();
         for pass in passes {
             parallel::each(self.tiles.iter_mut(), |i, tile| {
