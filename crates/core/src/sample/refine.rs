@@ -31,6 +31,8 @@ pub(super) struct Cell {
 
 /// The samples of a cell: corners in reading order, and the centre.
 pub(super) struct Corners<'a> {
+    /// Side of the cell, px.
+    pub size: usize,
     pub corners: [Sample<'a>; 4],
     pub centre: Option<Sample<'a>>,
 }
@@ -87,7 +89,11 @@ pub fn refine(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize), tile
         let mut next = Vec::new();
         for &cell in &cells {
             let at = |(x, y): (usize, usize)| scratch.samples.get(scratch.grid[y * GRID + x] as usize);
-            let known = Corners { corners: cell.points().map(at), centre: cell.middle(stage).map(at) };
+            let known = Corners {
+                size: cell.size,
+                corners: cell.points().map(at),
+                centre: cell.middle(stage).map(at),
+            };
             if cell.size == 1 {
                 tile.set(cell.x, cell.y, known.corners[0].colour(), Record::new(Kind::Traced, 1));
                 scratch.counters.add(Counter::Traced, 1);
@@ -185,6 +191,12 @@ impl Corners<'_> {
     #[inline(never)]
     fn smooth(&self, stage: &Stage) -> bool {
         if !self.same_surface() {
+            return false;
+        }
+        // Mirrors magnify relief: between samples farther apart than its cells nothing is known.
+        let first = self.corners[0];
+        let mirrors = first.material(stage).is_some_and(|m| m.reflection > 0.0);
+        if mirrors && first.relief_within(stage, self.size) {
             return false;
         }
         let same = self.same_signature();
