@@ -4,7 +4,7 @@
 //! within 0.004. Grain: a hash of pixel and
 //! frame, which also hides banding. Pixels are quantised by floor(255 v + 1/2).
 
-use super::bloom::{Bloom, Line};
+use super::bloom::{Bloom, Glow};
 use crate::counters::{Counter, Counters};
 use crate::math::hash::{hash2, mix_x8, unit_x8};
 use crate::math::lanes::{F, LANE_INDEX, RAMP, V3, load, splat, splat_u};
@@ -25,21 +25,14 @@ pub fn finish(stage: &Stage, tiles: &[Tile], bloom: &mut Bloom, n: u64, pixels: 
     counters.add(Counter::BloomPasses, glow.is_some() as usize);
     let painted = (stage.scene.overlay * stage.width as f32) as usize;
     counters.add(Counter::OverlayPixels, painted * stage.height as usize);
-    parallel::run(pixels.chunks_mut(width * ROWS).enumerate().map(|(strip, rows)| {
-        move || {
-            let mut line = Line::default();
-            for (row, y) in rows.chunks_mut(width).zip(strip * ROWS..) {
-                if let Some(glow) = glow {
-                    glow.row(y, &mut line);
-                }
-                let light = glow.map(|_| &line);
-                let tiles = &tiles[y / TILE * across..];
-                for (k, (tile, part)) in tiles.iter().zip(row.chunks_mut(TILE)).enumerate() {
-                    finish_row(stage, tile, light, (k * TILE, y), n, part);
-                }
+    parallel::each(pixels.chunks_mut(width * ROWS), |strip, rows| {
+        for (row, y) in rows.chunks_mut(width).zip(strip * ROWS..) {
+            let tiles = &tiles[y / TILE * across..];
+            for (k, (tile, part)) in tiles.iter().zip(row.chunks_mut(TILE)).enumerate() {
+                finish_row(stage, tile, glow, (k * TILE, y), n, part);
             }
         }
-    }));
+    });
     counters
 }
 
@@ -47,7 +40,7 @@ pub fn finish(stage: &Stage, tiles: &[Tile], bloom: &mut Bloom, n: u64, pixels: 
 fn finish_row(
     stage: &Stage,
     tile: &Tile,
-    glow: Option<&Line>,
+    glow: Option<&Glow>,
     (x, y): (usize, usize),
     n: u64,
     row: &mut [u32],
@@ -63,7 +56,7 @@ fn finish_row(
         let mut linear = V3 { x: load(&r[at..]), y: load(&g[at..]), z: load(&b[at..]) };
         let x = x + base * 8;
         if let Some(glow) = glow {
-            linear += glow.at(x) * splat(1.0 / grade.exposure);
+            linear += glow.light(x, y, glow.scale) * splat(1.0 / grade.exposure);
         }
         let mut colour = stage.display.map8(linear);
 

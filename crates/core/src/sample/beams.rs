@@ -4,7 +4,9 @@
 //! the depth of the pixel's surface.
 
 use super::tile::{TILE, Tile};
-use crate::counters::{Counter, Counters};
+use super::wave::Scratch;
+use crate::counters::Counter;
+use crate::features;
 use crate::math::lanes::{F, RAMP, V3, load, splat};
 use crate::render::Stage;
 use crate::shade::beam;
@@ -16,7 +18,10 @@ const BLOCK: usize = 8;
 
 /// Adds the beams to the tile whose upper left pixel is `corner`.
 #[inline(never)]
-pub fn beams(stage: &Stage, corner: (usize, usize), tile: &mut Tile, counters: &mut Counters) {
+pub fn beams(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize), tile: &mut Tile) {
+    if !features::BEAMS {
+        return;
+    }
     let forward = V3::splat(stage.forward());
     let half = Vec2::splat(0.5 * BLOCK as f32 * stage.pixel);
     for (light, dop) in stage.scene.beams.iter().zip(&stage.beams) {
@@ -27,7 +32,7 @@ pub fn beams(stage: &Stage, corner: (usize, usize), tile: &mut Tile, counters: &
             if !dop.meets_rectangle(middle, half) {
                 continue;
             }
-            counters.add(Counter::Beams, BLOCK * BLOCK);
+            scratch.counters.add(Counter::Beams, BLOCK * BLOCK);
             for row in 0..BLOCK {
                 let at = (y + row) * TILE + x;
                 let direction = stage.directions(splat(left + 0.5) + RAMP, splat(top + 0.5 + row as f32));

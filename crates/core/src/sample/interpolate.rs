@@ -8,6 +8,7 @@ use super::block::Sample;
 use super::refine::{Cell, Corners};
 use super::tile::{Kind, Record, TILE, Tile};
 use crate::counters::{Counter, Counters};
+use crate::features;
 use crate::math::lanes::{F, LANE_INDEX, U, V3, splat, splat_u};
 use crate::quality::Rung;
 use crate::render::Stage;
@@ -73,7 +74,7 @@ pub(super) fn fill(
         (true, true) => stage.rung(first.id()).min(Rung::Light),
         (false, _) => stage.rung(first.id()),
     };
-    if !tile.nearness.is_empty() {
+    if features::BEAMS && !stage.scene.beams.is_empty() {
         fill_nearness(cell, known, tile);
     }
     let scale = splat(1.0 / cell.size as f32);
@@ -126,7 +127,7 @@ fn fill_nearness(cell: Cell, known: &Corners, tile: &mut Tile) {
         let (column, row) = (i % cell.size, i / cell.size);
         let (x, y) = (column as f32 / cell.size as f32, row as f32 / cell.size as f32);
         let (upper, lower) = (a + (b - a) * x, c + (d - c) * x);
-        tile.set_nearness(cell.x + column, cell.y + row, upper + (lower - upper) * y);
+        tile.nearness[(cell.y + row) * TILE + cell.x + column] = upper + (lower - upper) * y;
     }
 }
 

@@ -1,5 +1,6 @@
 //! A square of pixels that is sampled as one unit, and how each of its pixels was got.
 
+use crate::counters::Counters;
 use glam::Vec3;
 
 /// Side of a tile, px.
@@ -40,37 +41,50 @@ impl Record {
     }
 }
 
-/// Edge pixels of the neighbours to the right and below that this tile has found.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Borders {
-    /// Bit y: the pixel at (64, y).
-    pub right: u64,
-    /// Bit x: the pixel at (x, 64).
-    pub bottom: u64,
-    /// The pixel at (64, 64).
-    pub corner: bool,
-}
+/// Side of the grid of a tile's samples: one more than its pixels.
+pub const GRID: usize = TILE + 1;
 
 /// The finished linear light of a tile's pixels, row after row of [`TILE`].
 pub struct Tile {
     /// Red, green and blue planes.
-    pub rgb: [Vec<f32>; 3],
+    pub rgb: [[f32; TILE * TILE]; 3],
     /// How each pixel was got.
-    pub record: Vec<Record>,
-    /// One over the depth of each pixel's surface along the view axis, 0 where there is none; empty
-    /// if the scene doesn't ask for it.
-    pub nearness: Vec<f32>,
-    /// Bit x of word y: the pixel lies on an edge.
-    pub edges: [u64; TILE],
+    pub record: [Record; TILE * TILE],
+    /// One over the depth of each pixel's surface along the view axis, 0 where there is none; not kept
+    /// where the scene has no use for it.
+    pub nearness: [f32; TILE * TILE],
+    /// Which pixels lie on an edge, by row; the last of each row and column are the neighbours'.
+    pub edges: [[bool; GRID]; GRID],
+    /// What sampling it took.
+    pub counters: Counters,
 }
 
 impl Default for Tile {
     fn default() -> Self {
         Self {
-            rgb: std::array::from_fn(|_| vec![0.0; TILE * TILE]),
-            record: vec![Record::default(); TILE * TILE],
-            nearness: Vec::new(),
-            edges: [0; TILE],
+            rgb: [[0.0; TILE * TILE]; 3],
+            record: [Record(0); TILE * TILE],
+            nearness: [0.0; TILE * TILE],
+            edges: [[false; GRID]; GRID],
+            counters: Counters::default(),
+        }
+    }
+}
+
+/// Hands the edge pixels that tiles have found beyond their right and lower border on to the tiles
+/// there, `across` to a row.
+pub fn share_edges(tiles: &mut [Tile], across: usize) {
+    for i in 0..tiles.len() {
+        for (right, below) in [(1, 0), (0, 1), (1, 1)] {
+            let to = i + right + below * across;
+            if i % across + right == across || to >= tiles.len() {
+                continue;
+            }
+            for k in 0..TILE {
+                let (x, y) = (k * (1 - right), k * (1 - below));
+                let found = tiles[i].edges[y + TILE * below][x + TILE * right];
+                tiles[to].edges[y][x] |= found;
+            }
         }
     }
 }
@@ -80,13 +94,6 @@ impl Tile {
     pub fn get(&self, x: usize, y: usize) -> Vec3 {
         let i = y * TILE + x;
         Vec3::new(self.rgb[0][i], self.rgb[1][i], self.rgb[2][i])
-    }
-
-    /// Notes the depth of the surface at (x, y), if that is asked for.
-    pub fn set_nearness(&mut self, x: usize, y: usize, nearness: f32) {
-        if let Some(place) = self.nearness.get_mut(y * TILE + x) {
-            *place = nearness;
-        }
     }
 
     /// Sets the pixel at (x, y).
