@@ -4,6 +4,7 @@
 //! pure function of its local frame, so any frame can be rendered on its own and nothing drifts.
 
 mod gold;
+mod luc;
 mod mirror;
 mod paint;
 
@@ -29,6 +30,7 @@ pub struct Part {
 
 /// The parts in playing order.
 pub const PARTS: &[Part] = &[
+    Part { name: "luc", frames: 6 * BAR, scene: luc::scene },
     Part { name: "mirror", frames: 16 * BAR, scene: mirror::scene },
     Part { name: "gold", frames: 16 * BAR, scene: gold::scene },
 ];
