@@ -8,6 +8,7 @@ use super::block::{Block, Samples};
 use super::rays::{Packet, RayList};
 use crate::counters::{Counter, Counters};
 use crate::cull::{Region, occluders};
+use crate::features;
 use crate::math::hash::mix_x8;
 use crate::math::lanes::{F, U, V3, splat};
 use crate::render::Stage;
@@ -67,7 +68,8 @@ impl Boxes {
             let (lo, hi) = (fold(lo, Vec3::min), fold(hi, Vec3::max));
             // Shadow rays start at the points as put back onto the surface, a clearance off.
             let reach = lo.abs().max(hi.abs()).length() + stage.scene.camera.position.length();
-            let region = Region::cuboid(lo, hi, 4e-6 * reach);
+            let off = if stage.scene.fields.is_empty() { 0.0 } else { 4.0 * stage.quality.epsilon };
+            let region = Region::cuboid(lo, hi, 4e-6 * reach + off);
             for (mask, shafts) in masks.iter_mut().zip(&stage.shafts) {
                 *mask |= occluders(stage.scene, shafts, !*mask, Some(shape as usize), &region);
             }
@@ -128,7 +130,9 @@ pub type Position = (f32, f32);
 fn step(stage: &Stage, scratch: &mut Scratch, candidates: u64, level: u32) {
     let Scratch { samples, counters, rays, next, hits, occluders: boxes, .. } = scratch;
     hits.clear();
-    hits.extend(rays.packets.iter().map(|p| nearest(stage.scene, &p.rays, candidates, counters)));
+    hits.extend(
+        rays.packets.iter().map(|p| nearest(stage.scene, &stage.quality, &p.rays, candidates, counters)),
+    );
 
     let mut shadows = [u64::MAX; MAX_LAMPS];
     if stage.quality.cull && hits.len() >= CULL_FROM {
@@ -170,6 +174,8 @@ struct Found {
     /// The hits, and their weighted light, as samples of their own; `surface` and `direct` are left
     /// open, and `signature` holds what was seen of shining rectangles.
     block: Block,
+    /// Which part of its field each lane has hit.
+    part: F,
     /// Mirrored and refracted rays, which go on from the hits.
     onward: [Packet; 2],
 }
@@ -199,6 +205,13 @@ fn shade_packet(
         light += weight * scattered;
         weight = weight * through;
     }
+    if features::BEAMS && level > 0 {
+        // What the eye sees of them straight is added to the finished pixels.
+        counters.add(Counter::Beams, 8 * scene.beams.len());
+        for beam in &scene.beams {
+            light += packet.weight * shade::beam(beam, rays, spread, hit.t);
+        }
+    }
     if level > 0 && !scene.emitters.is_empty() {
         counters.add(Counter::EmitterTests, 8 * scene.emitters.len());
         let (shine, hidden, seen) = shade::emitters(&scene.emitters, rays, spread, hit.t);
@@ -223,7 +236,8 @@ fn shade_packet(
         light += weight * shade::ambient(stage, rays.direction) * blur;
         weight = weight * (F::ONE - blur);
     }
-    let Found { block, onward } = found;
+    let Found { block, part, onward } = found;
+    *part = F::ZERO;
     *block = Block::default();
     block.colour = light;
     block.signature = signature.to_bits();
@@ -236,19 +250,20 @@ fn shade_packet(
     }
 
     let t = solid.select(hit.t, F::ZERO);
-    let s = surface(scene, rays, t, solid.select(hit.id, splat(NONE)), spread);
+    let s = surface(scene, &stage.quality, rays, t, solid.select(hit.id, splat(NONE)), spread);
     s.count(counters);
     let view = -rays.direction;
     let trace = Visibility::Trace(shadows);
     let lit = shade::direct(stage, &s, view, solid, trace, &mut block.codes, counters);
     let split = shade::split(scene.shading, &s, rays.direction);
-    let local = shade::local(stage, &s, &split, lit);
+    let local = shade::local(stage, &s, &split, lit, solid, counters);
     let seen = weight & solid;
     block.albedo = s.colour(Channel::Colour);
     block.irradiance = seen * local.irradiance;
     block.colour += block.irradiance * block.albedo + seen * local.rest;
     block.point = s.point;
     block.normal = s.normal;
+    (block.node, *part) = (s.node, s.part);
 
     let facing = V3::select(s.inside, -s.outward, s.outward);
     let offset = facing * s.clearance;
@@ -276,7 +291,7 @@ fn shade_packet(
 impl Found {
     /// Hash of what each lane saw.
     fn hash(&self, stage: &Stage) -> U {
-        let mut h = mix_x8(self.block.id.to_bits(), self.block.signature);
+        let mut h = mix_x8(self.block.id.to_bits() ^ self.part.to_bits(), self.block.signature);
         for code in &self.block.codes[..stage.lamps.len().min(MAX_LAMPS)] {
             h = mix_x8(h, code.to_bits());
         }
