@@ -9,7 +9,7 @@
 //! [`sample`] decides where to trace → [`trace`] finds what rays hit, with [`cull`] leaving out what
 //! can't matter → [`shade`] lights it → [`post`] makes pixels, [`output`] files. [`math`] has
 //! everything that would differ between machines, [`parallel`] spreads work over threads,
-//! [`counters`] say what a frame did.
+//! [`counters`] say what a frame did, [`features`] what an executable can do.
 //!
 //! ```
 //! use luc_core::{quality::Quality, render::Renderer, scene::*};
@@ -31,6 +31,7 @@
 
 pub mod counters;
 pub mod cull;
+pub mod features;
 pub mod math;
 pub mod output;
 pub mod parallel;

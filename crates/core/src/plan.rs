@@ -22,7 +22,9 @@ impl Plan {
         let mirrors = chains && materials().any(|m| m.reflection > 0.0 && m.f0.max_element() > 0.0);
         let glass = chains && materials().any(|m| m.is_transparent());
         let adaptive = quality.block > 1;
-        let textured = materials().any(|m| m.grain > 0.0);
+        let grain = materials().any(|m| m.texture.grain > 0.0);
+        let bumps = materials().any(|m| m.texture.bump > 0.0);
+        let textured = grain || bumps;
         let known = quality.rung == Rung::Surface || (quality.rung == Rung::Light && textured);
         let calls = [
             (Counter::PrimaryRays, true),
@@ -40,7 +42,9 @@ impl Plan {
             (Counter::LightEvaluations, lit),
             (Counter::Phong, lit && scene.shading == Shading::Phong),
             (Counter::CookTorrance, lit && scene.shading == Shading::CookTorrance),
-            (Counter::TextureLookups, textured),
+            (Counter::Ggx, lit && scene.shading == Shading::Ggx),
+            (Counter::TextureLookups, grain),
+            (Counter::Bumps, bumps),
             (Counter::FogSegments, scene.fog.is_some()),
             (Counter::KnownSurfaces, adaptive && known),
             (Counter::Traced, !adaptive || quality.smallest <= 1),

@@ -251,11 +251,11 @@ fn shade_packet(
 
     let t = solid.select(hit.t, F::ZERO);
     let s = surface(scene, rays, t, solid.select(hit.id, splat(NONE)), spread);
-    counters.add(Counter::TextureLookups, s.textured());
+    s.count(counters);
     let view = -rays.direction;
     let trace = Visibility::Trace(shadows);
     let lit = shade::direct(stage, &s, view, solid, trace, &mut found.codes, counters);
-    let split = shade::split(&s, rays.direction);
+    let split = shade::split(scene.shading, &s, rays.direction);
     let local = shade::local(stage, &s, &split, lit);
     let seen = weight & solid;
     found.albedo = s.colour(Channel::Colour);

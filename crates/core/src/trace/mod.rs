@@ -9,6 +9,7 @@ mod plane;
 mod round;
 mod sphere;
 mod surface;
+mod texture;
 mod triangle;
 
 #[cfg(test)]
@@ -22,6 +23,7 @@ pub use plane::plane;
 pub use round::{cone, cylinder};
 pub use sphere::sphere;
 pub use surface::{Surface, surface};
+pub use texture::relief_within;
 pub use triangle::triangle;
 
 use crate::counters::Counter;
