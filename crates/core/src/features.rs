@@ -10,6 +10,18 @@ use crate::counters::Counter;
 pub const GGX: bool = cfg!(feature = "ggx");
 /// Relief from patterns.
 pub const BUMPS: bool = cfg!(feature = "bumps");
+/// Signed distance fields.
+pub const FIELDS: bool = cfg!(feature = "fields");
+/// Ambient occlusion by fields.
+pub const FIELD_OCCLUSION: bool = cfg!(feature = "field-occlusion");
+/// Beams of light.
+pub const BEAMS: bool = cfg!(feature = "beams");
 
 /// Each feature with the counter that shows it at work.
-pub const ALL: [(&str, Counter); 2] = [("ggx", Counter::Ggx), ("bumps", Counter::Bumps)];
+pub const ALL: [(&str, Counter); 5] = [
+    ("ggx", Counter::Ggx),
+    ("bumps", Counter::Bumps),
+    ("fields", Counter::FieldSteps),
+    ("field-occlusion", Counter::FieldOcclusion),
+    ("beams", Counter::Beams),
+];
