@@ -392,9 +392,12 @@ pub fn rayon_core(source: &mut Source) -> Result<(), Error> {
     source.replace(registry, "            } else if (*worker_thread).registry().id() != self.id() {", "            } else {\n                // Perfectly valid to give them a `&T`: this is the\n                // current thread, so we know the data structure won't be\n                // invalidated until we return.\n                op(&*worker_thread, false)", "", edit)?;
 
     let edit = "leave out broadcasts";
-    for field in ["    stealer: Stealer<JobRef>,\n    registry: Arc<Registry>,\n    index: usize,\n}"] {
-        source.replace_text(registry, field, "    registry: Arc<Registry>,\n    index: usize,\n}", edit)?;
-    }
+    source.replace_text(
+        registry,
+        "    stealer: Stealer<JobRef>,\n    registry: Arc<Registry>,\n    index: usize,\n}",
+        "    registry: Arc<Registry>,\n    index: usize,\n}",
+        edit,
+    )?;
     source.replace_text(
         registry,
         "    /// the \"stealer\" half of the worker's broadcast deque\n    stealer: Stealer<JobRef>,\n",
