@@ -7,6 +7,7 @@ mod gold;
 mod luc;
 mod mirror;
 mod paint;
+mod still;
 
 use luc_core::quality::Quality;
 use luc_core::render::Renderer;
