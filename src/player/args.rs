@@ -169,9 +169,10 @@ Lúč, a ray-traced intro. Esc or closing the window ends it.
         &one_of(&mut qualities()),
         b"
                    (a frame: high; playing: whatever holds 60 frames a second)
-  --scene NAME     only this part, ",
+  --scene NAME     only this part, N counts from its start;
+                   ",
         &one_of(&mut scenes()),
-        b"; N counts from its start
+        b"
   --from N         start playing at frame N, 60 a second
   --once           end instead of looping
   --fullscreen     cover the screen
