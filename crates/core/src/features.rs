@@ -11,5 +11,15 @@ pub const GGX: bool = cfg!(feature = "ggx");
 /// Relief from patterns.
 pub const BUMPS: bool = cfg!(feature = "bumps");
 
+/// Bounces of diffuse light.
+pub const BOUNCES: bool = cfg!(feature = "bounces");
+/// Mirrors of rough surfaces by several rays.
+pub const ROUGH: bool = cfg!(feature = "rough");
+
 /// Each feature with the counter that shows it at work.
-pub const ALL: [(&str, Counter); 2] = [("ggx", Counter::Ggx), ("bumps", Counter::Bumps)];
+pub const ALL: [(&str, Counter); 4] = [
+    ("ggx", Counter::Ggx),
+    ("bumps", Counter::Bumps),
+    ("bounces", Counter::ScatterRays),
+    ("rough", Counter::RoughRays),
+];

@@ -32,10 +32,16 @@ pub struct Quality {
     pub samples: u32,
     /// Longest chain of mirrors and refractions.
     pub depth: u32,
+    /// Rays of a bounce of diffuse light, where the scene has bounces; 0 for its ambient light.
+    pub scatter: u32,
+    /// Rays drawn for the mirror of a rough surface under GGX; 0 for one with a wide footprint.
+    pub rough: u32,
     /// Rays whose contribution is at most this are not followed, in units of display white.
     pub cutoff: f32,
     /// Leave out shapes and occluders that a tile can't meet. Changes the time, never the picture.
     pub cull: bool,
+    /// Frames with different sample patterns that are averaged: 1, more for a still.
+    pub average: u32,
 }
 
 impl Quality {
@@ -52,8 +58,11 @@ impl Quality {
                 edge_samples: 0,
                 samples: 0,
                 depth: 2,
+                scatter: 0,
+                rough: 0,
                 cutoff: 0.1,
                 cull: true,
+                average: 1,
             },
         ),
         (
@@ -67,8 +76,11 @@ impl Quality {
                 edge_samples: 0,
                 samples: 0,
                 depth: 3,
+                scatter: 0,
+                rough: 0,
                 cutoff: 0.06,
                 cull: true,
+                average: 1,
             },
         ),
         (
@@ -82,8 +94,11 @@ impl Quality {
                 edge_samples: 1,
                 samples: 0,
                 depth: 4,
+                scatter: 0,
+                rough: 0,
                 cutoff: 0.04,
                 cull: true,
+                average: 1,
             },
         ),
         (
@@ -97,8 +112,11 @@ impl Quality {
                 edge_samples: 3,
                 samples: 0,
                 depth: 5,
+                scatter: 0,
+                rough: 0,
                 cutoff: 0.02,
                 cull: true,
+                average: 1,
             },
         ),
         (
@@ -112,8 +130,11 @@ impl Quality {
                 edge_samples: 7,
                 samples: 0,
                 depth: 7,
+                scatter: 4,
+                rough: 4,
                 cutoff: 0.01,
                 cull: true,
+                average: 1,
             },
         ),
         (
@@ -127,8 +148,11 @@ impl Quality {
                 edge_samples: 15,
                 samples: 15,
                 depth: 12,
+                scatter: 4,
+                rough: 4,
                 cutoff: 0.001,
                 cull: true,
+                average: 1,
             },
         ),
     ];

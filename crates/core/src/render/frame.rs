@@ -7,6 +7,7 @@ use crate::quality::Quality;
 use crate::sample::{Borders, Scratch, TILE, Tile, refine, smooth_edges};
 use crate::scene::Scene;
 use crate::{parallel, post};
+use glam::Vec2;
 use std::sync::{Mutex, PoisonError};
 
 /// Buffers of the threads at work, handed out and taken back.
@@ -46,17 +47,31 @@ impl Renderer {
         quality: &Quality,
         pixels: &mut [u32],
     ) {
-        let stage = Stage::new(scene, quality, width, height);
+        let mut stage = Stage::new(scene, quality, width, height);
         let across = (width as usize).div_ceil(TILE);
         let down = (height as usize).div_ceil(TILE);
         self.tiles.resize_with(across * down, Tile::default);
-        let corner = |i: usize| (i % across * TILE, i / across * TILE);
 
+        self.counters = Counters::default();
+        let mut sums: Vec<f32> = Vec::new();
+        for pattern in 0..quality.average {
+            stage.pattern = pattern;
+            stage.shift = shift(pattern);
+            self.trace(&stage, across);
+            if quality.average > 1 {
+                average(&mut self.tiles, &mut sums, pattern + 1);
+            }
+        }
+        self.counters.merge(&post::finish(&stage, &self.tiles, &mut self.bloom, n, pixels));
+    }
+
+    /// Samples all tiles, `across` in a row.
+    fn trace(&mut self, stage: &Stage, across: usize) {
+        let corner = |i: usize| (i % across * TILE, i / across * TILE);
         let pool = &self.scratch;
         let mut found = vec![(Borders::default(), Counters::default()); self.tiles.len()];
         let tiles = self.tiles.iter_mut().zip(&mut found).enumerate();
         parallel::run(tiles.map(|(i, (tile, found))| {
-            let stage = &stage;
             move || pool.with(|scratch| *found = (refine(stage, scratch, corner(i), tile), scratch.counters))
         }));
 
@@ -66,7 +81,7 @@ impl Renderer {
         let mut more = vec![Counters::default(); self.tiles.len()];
         let tiles = self.tiles.iter_mut().zip(&mut more).enumerate();
         parallel::run(tiles.map(|(i, (tile, counters))| {
-            let (x, y, stage) = (i % across, i / across, &stage);
+            let (x, y) = (i % across, i / across);
             let near = [border(x, y + 1), border(x + 1, y), border(x, y)];
             move || {
                 pool.with(|scratch| {
@@ -75,10 +90,28 @@ impl Renderer {
                 });
             }
         }));
-        self.counters = Counters::default();
         for counters in found.iter().map(|f| &f.1).chain(&more) {
             self.counters.merge(counters);
         }
-        self.counters.merge(&post::finish(&stage, &self.tiles, &mut self.bloom, n, pixels));
+    }
+}
+
+/// Where pattern `k` moves the samples: points of the R2 sequence about the middle of a pixel, the
+/// first of which is the middle itself.
+fn shift(k: u32) -> Vec2 {
+    let offset = |step: f32| {
+        let x = 0.5 + k as f32 * step;
+        x - x.floor() - 0.5
+    };
+    Vec2::new(offset(0.754_877_7), offset(0.569_840_3))
+}
+
+/// Adds the light of the tiles to `sums`, and puts the mean of all `count` so far in its place.
+fn average(tiles: &mut [Tile], sums: &mut Vec<f32>, count: u32) {
+    sums.resize(tiles.len() * 3 * TILE * TILE, 0.0);
+    let planes = tiles.iter_mut().flat_map(|tile| &mut tile.rgb);
+    for (sum, light) in sums.iter_mut().zip(planes.flatten()) {
+        *sum += *light;
+        *light = *sum / count as f32;
     }
 }

@@ -9,10 +9,12 @@ mod edges;
 mod interpolate;
 mod rays;
 mod refine;
+mod scatter;
 mod tile;
 mod wave;
 
 pub use edges::smooth_edges;
 pub use refine::refine;
+pub use scatter::ROUGH;
 pub use tile::{Borders, Kind, Record, TILE, Tile};
 pub use wave::Scratch;

@@ -1,6 +1,6 @@
 //! Lists of rays on their way to samples, in packets of eight.
 
-use crate::math::lanes::{F, V3, splat};
+use crate::math::lanes::{F, U, V3, splat, splat_u};
 use crate::trace::Rays8;
 
 /// Eight rays and what their light is for.
@@ -12,6 +12,8 @@ pub struct Packet {
     pub weight: V3,
     /// Width of the footprint per unit of distance.
     pub spread: F,
+    /// Random bits, and how the rays came about: see [`super::scatter`].
+    pub seed: U,
     /// Indices of the samples the rays belong to.
     pub samples: [u32; 8],
 }
@@ -32,18 +34,19 @@ impl RayList {
         self.count = 0;
     }
 
-    /// Appends a ray: one lane of these vectors.
+    /// Appends a ray: one lane of a packet.
     #[inline(never)]
-    pub fn push(&mut self, lane: usize, rays: &Rays8, weight: V3, spread: F, sample: u32) {
+    pub fn push(&mut self, lane: usize, from: &Packet, sample: u32) {
         let (origin, direction, weight) =
-            (rays.origin.lane(lane), rays.direction.lane(lane), weight.lane(lane));
-        let spread = spread.as_array()[lane];
+            (from.rays.origin.lane(lane), from.rays.direction.lane(lane), from.weight.lane(lane));
+        let (spread, seed) = (from.spread.as_array()[lane], from.seed.as_array()[lane]);
         let at = self.count & 7;
         if at == 0 {
             self.packets.push(Packet {
                 rays: Rays8 { origin: V3::splat(origin), direction: V3::splat(direction) },
                 weight: V3::splat(weight),
                 spread: splat(spread),
+                seed: splat_u(seed),
                 samples: [sample; 8],
             });
         } else if let Some(packet) = self.packets.last_mut() {
@@ -51,6 +54,7 @@ impl RayList {
             packet.rays.direction.set_lane(at, direction);
             packet.weight.set_lane(at, weight);
             packet.spread.as_mut_array()[at] = spread;
+            packet.seed.as_mut_array()[at] = seed;
             packet.samples[at] = sample;
         }
         self.count += 1;

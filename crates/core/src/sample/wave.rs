@@ -6,12 +6,14 @@
 
 use super::block::{Block, Samples};
 use super::rays::{Packet, RayList};
+use super::scatter;
 use crate::counters::{Counter, Counters};
 use crate::cull::{Region, occluders};
+use crate::features;
 use crate::math::hash::mix_x8;
 use crate::math::lanes::{F, U, V3, splat, splat_u};
 use crate::render::Stage;
-use crate::scene::Channel;
+use crate::scene::{Channel, Shading};
 use crate::shade::{self, Codes, MAX_LAMPS, Visibility};
 use crate::trace::{Hits, NONE, Rays8, nearest, surface};
 use glam::Vec3;
@@ -28,6 +30,7 @@ pub struct Scratch {
     rays: RayList,
     next: RayList,
     hits: Vec<Hits>,
+    ways: Vec<Way>,
     occluders: Boxes,
 }
 
@@ -101,6 +104,7 @@ pub fn trace(stage: &Stage, scratch: &mut Scratch, positions: &[Position], candi
             rays: Rays8 { origin: V3::splat(stage.scene.camera.position), direction: stage.directions(x, y) },
             weight: V3::splat(Vec3::ONE),
             spread: splat(stage.pixel),
+            seed: scatter::seed(x, y),
             samples: std::array::from_fn(|i| (8 * (first + k) + i) as u32),
         });
     }
@@ -122,11 +126,20 @@ pub fn trace(stage: &Stage, scratch: &mut Scratch, positions: &[Position], candi
 /// A position in the picture, px from its left and upper edges.
 pub type Position = (f32, f32);
 
+/// Inverse sharpness of what rays with this footprint see of the sky's glows: the variance of a box.
+pub(super) fn soft(stage: &Stage, spread: F) -> F {
+    if features::GGX && stage.scene.shading == Shading::Ggx {
+        spread * spread * splat(1.0 / 12.0)
+    } else {
+        F::ZERO
+    }
+}
+
 /// Traces `scratch.rays`, adds what they find to their samples, and appends what goes on from
 /// there to `scratch.next`.
 #[inline(never)]
 fn step(stage: &Stage, scratch: &mut Scratch, candidates: u64, level: u32) {
-    let Scratch { samples, counters, rays, next, hits, occluders: boxes, .. } = scratch;
+    let Scratch { samples, counters, rays, next, hits, occluders: boxes, ways, .. } = scratch;
     hits.clear();
     hits.extend(rays.packets.iter().map(|p| nearest(stage.scene, &p.rays, candidates, counters)));
 
@@ -141,27 +154,47 @@ fn step(stage: &Stage, scratch: &mut Scratch, candidates: u64, level: u32) {
 
     for (k, hit) in hits.iter().enumerate() {
         let packet = &rays.packets[k];
-        let found = shade_packet(stage, packet, hit, level, &shadows, counters);
         let owners = rays.owners(k);
+        ways.clear();
+        let found = shade_packet(stage, packet, hit, level, &shadows, ways, counters);
         let hash = found.hash(stage);
         if level == 0 {
             samples.0.push(found.block(stage, packet, hash));
         } else {
+            // What drawn rays meet differs from sample to sample.
+            let drawn = scatter::drawn(packet).to_bitmask();
             for (lane, &owner) in owners.iter().enumerate() {
                 // Two hits deep for all, three for what is seen through glass.
                 let id = samples.get(owner as usize).id();
                 let deep = level == 1 || (level == 2 && id >= 0.0 && stage.bits[id as usize >> 2] > 0.0);
-                let hash = deep.then_some(hash.as_array()[lane]);
+                let hash = (deep && drawn >> lane & 1 == 0).then_some(hash.as_array()[lane]);
                 samples.add(owner as usize, found.light.lane(lane), hash);
             }
         }
-        if level < stage.quality.depth {
-            found.spawn(stage, owners, next, counters);
+        // Sample by sample, so that each one's rays keep their order however lists are cut.
+        for (lane, &owner) in owners.iter().enumerate() {
+            for way in ways.iter().filter(|way| way.which >> lane & 1 == 1) {
+                counters.add(way.counter, 1);
+                if way.counter == Counter::RoughRays {
+                    counters.add(Counter::ReflectedRays, 1);
+                }
+                next.push(lane, &way.rays, owner);
+            }
         }
     }
 }
 
-/// What a packet's rays found: light for their samples, and where rays go on from.
+/// Rays that go on from a packet's hits.
+pub(super) struct Way {
+    /// The rays, with the indices of their ancestors' samples.
+    pub rays: Packet,
+    /// Lanes that have such a ray, lane 0 lowest.
+    pub which: u32,
+    /// What counts them.
+    pub counter: Counter,
+}
+
+/// What a packet's rays found: light for their samples.
 struct Found {
     /// Weighted light, all of it.
     light: V3,
@@ -174,11 +207,6 @@ struct Found {
     normal: V3,
     codes: Codes,
     signature: F,
-    spread: F,
-    mirrored: Rays8,
-    mirrored_weight: V3,
-    refracted: Rays8,
-    refracted_weight: V3,
 }
 
 /// Light that the rays of a packet find at their hits, and the rays that go on from there.
@@ -189,11 +217,12 @@ fn shade_packet(
     hit: &Hits,
     level: u32,
     shadows: &[u64; MAX_LAMPS],
+    ways: &mut Vec<Way>,
     counters: &mut Counters,
 ) -> Found {
     let scene = stage.scene;
-    let Packet { rays, spread, .. } = packet;
-    let spread = *spread;
+    let Packet { rays, spread, seed, .. } = packet;
+    let (spread, scattered, drawn) = (*spread, scatter::scattered(packet), scatter::drawn(packet));
     let zero = V3::ZERO;
     let mut weight = packet.weight;
     let mut light = zero;
@@ -205,11 +234,11 @@ fn shade_packet(
         light += weight * scattered;
         weight = weight * through;
     }
-    if level > 0 && !scene.emitters.is_empty() {
+    if level > 0 && !scene.emitters.is_empty() && !scattered.all() {
         counters.add(Counter::EmitterTests, 8 * scene.emitters.len());
         let (shine, hidden, seen) = shade::emitters(&scene.emitters, rays, spread, hit.t);
-        light += weight * shine;
-        weight = weight * (F::ONE - hidden);
+        light += (weight * shine) & !scattered;
+        weight = weight * (F::ONE - (hidden & !scattered));
         signature = seen;
     }
 
@@ -218,14 +247,14 @@ fn shade_packet(
     if !solid.all() {
         counters.add(Counter::DiscTests, 8 * scene.background.discs.len());
         counters.add(Counter::Glows, 8 * scene.background.glows.len());
-        let (sky, seen) = shade::background(&scene.background, rays, spread);
+        let (sky, seen) = shade::background(&scene.background, rays, spread, soft(stage, spread), scattered);
         light += (weight * sky) & !solid;
         id = solid.select(id, seen);
     }
     if level > 0 {
         // What a rough mirror sees far off dissolves into the mean light around it.
         let width = spread * hit.t - splat(BLUR_FROM);
-        let blur = (width * splat(BLUR_GAIN)).fast_max(F::ZERO).fast_min(F::ONE) & solid;
+        let blur = (width * splat(BLUR_GAIN)).fast_max(F::ZERO).fast_min(F::ONE) & (solid & !drawn);
         light += weight * shade::ambient(stage, rays.direction) * blur;
         weight = weight * (F::ONE - blur);
     }
@@ -239,24 +268,25 @@ fn shade_packet(
         normal: zero,
         codes: [F::ZERO; MAX_LAMPS],
         signature,
-        spread: F::ZERO,
-        mirrored: *rays,
-        mirrored_weight: zero,
-        refracted: *rays,
-        refracted_weight: zero,
     };
     if !solid.any() {
         return found;
     }
 
     let t = solid.select(hit.t, F::ZERO);
-    let s = surface(scene, rays, t, solid.select(hit.id, splat(NONE)), spread);
+    let mut s = surface(scene, rays, t, solid.select(hit.id, splat(NONE)), spread);
+    if features::BOUNCES {
+        // Highlights in what a bounce sees would be sparks.
+        let roughness = &mut s.material[Channel::Roughness as usize];
+        *roughness = roughness.fast_max(scattered & F::ONE);
+    }
     s.count(counters);
     let view = -rays.direction;
     let trace = Visibility::Trace(shadows);
     let lit = shade::direct(stage, &s, view, solid, trace, &mut found.codes, counters);
     let split = shade::split(scene.shading, &s, rays.direction);
-    let local = shade::local(stage, &s, &split, lit);
+    let bounces = scatter::bounces(stage, *seed, &s, level) & solid;
+    let local = shade::local(stage, &s, &split, lit, bounces);
     let seen = weight & solid;
     found.albedo = s.colour(Channel::Colour);
     found.irradiance = seen * local.irradiance;
@@ -267,20 +297,45 @@ fn shade_packet(
     let facing = V3::select(s.inside, -s.outward, s.outward);
     let offset = facing * s.clearance;
     let m = s.value(Channel::Roughness);
-    found.spread = spread + m * m * splat(6.0);
-    found.mirrored = Rays8 { origin: s.point + offset, direction: split.mirrored };
-    found.mirrored_weight = seen * split.reflectance * s.value(Channel::Reflection);
-    let entering = seen & !split.total;
+    let spread = spread + m * m * splat(6.0);
+    let mut mirror = seen * split.reflectance * s.value(Channel::Reflection);
     let one = V3::splat(Vec3::ONE);
     let passed = (one - split.reflectance) * s.value(Channel::Transparency);
-    found.refracted = Rays8 { origin: s.point - offset, direction: split.refracted };
-    found.refracted_weight = entering * passed * s.colour(Channel::Tint);
-    if level == stage.quality.depth {
+    let enter = (seen & !split.total) * passed * s.colour(Channel::Tint);
+    let outside = s.point + offset;
+
+    if bounces.any() {
+        let weight = seen * local.kept * found.albedo;
+        scatter::bounce(stage, &s, outside, (weight, bounces), (packet, level), ways);
+    }
+    let rough = scatter::rough(stage, &s, level) & solid;
+    if rough.any() {
+        let weight = seen * s.value(Channel::Reflection);
+        scatter::mirror(stage, &s, outside, (weight, rough), packet, ways);
+        mirror = mirror & !rough;
+    }
+    let cut = if level == stage.quality.depth { solid } else { scattered & solid };
+    if cut.any() {
         // Where the chain is cut, the mean light in place of what the rays would find.
-        let mirrored = found.mirrored_weight * shade::ambient(stage, split.mirrored);
-        let refracted = found.refracted_weight * shade::ambient(stage, split.refracted);
+        let mirrored = mirror * shade::ambient(stage, split.mirrored);
+        let refracted = enter * shade::ambient(stage, split.refracted);
         // Lanes without such a ray have no direction either.
-        found.light += (mirrored & solid) + (refracted & (solid & !split.total));
+        found.light += (mirrored & cut) + (refracted & (cut & !split.total));
+    }
+    // Only what may add something visible is followed.
+    let cutoff = splat(stage.quality.cutoff / scene.grade.exposure);
+    for (i, (origin, direction, weight, counter)) in [
+        (outside, split.mirrored, mirror, Counter::ReflectedRays),
+        (s.point - offset, split.refracted, enter, Counter::RefractedRays),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let worth = weight.x.fast_max(weight.y).fast_max(weight.z).simd_gt(cutoff) & !cut;
+        let seed = scatter::offspring(*seed, 64 + i as u32);
+        let rays =
+            Packet { rays: Rays8 { origin, direction }, weight, spread, seed, samples: packet.samples };
+        ways.push(Way { rays, which: worth.to_bitmask(), counter });
     }
     found
 }
@@ -310,24 +365,6 @@ impl Found {
             point: self.point,
             normal: self.normal,
             codes: self.codes,
-        }
-    }
-
-    /// Appends the rays that go on, if what they may add is worth it.
-    #[inline(never)]
-    fn spawn(&self, stage: &Stage, owners: &[u32], next: &mut RayList, counters: &mut Counters) {
-        let cutoff = splat(stage.quality.cutoff / stage.scene.grade.exposure);
-        let worth = |w: V3| w.x.fast_max(w.y).fast_max(w.z).simd_gt(cutoff).to_bitmask();
-        let (mirrors, enters) = (worth(self.mirrored_weight), worth(self.refracted_weight));
-        for (lane, &sample) in owners.iter().enumerate() {
-            if mirrors >> lane & 1 == 1 {
-                counters.add(Counter::ReflectedRays, 1);
-                next.push(lane, &self.mirrored, self.mirrored_weight, self.spread, sample);
-            }
-            if enters >> lane & 1 == 1 {
-                counters.add(Counter::RefractedRays, 1);
-                next.push(lane, &self.refracted, self.refracted_weight, self.spread, sample);
-            }
         }
     }
 }
