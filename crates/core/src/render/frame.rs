@@ -108,10 +108,15 @@ fn shift(k: u32) -> Vec2 {
 
 /// Adds the light of the tiles to `sums`, and puts the mean of all `count` so far in its place.
 fn average(tiles: &mut [Tile], sums: &mut Vec<f32>, count: u32) {
+    let share = 1.0 / count as f32;
     sums.resize(tiles.len() * 3 * TILE * TILE, 0.0);
-    let planes = tiles.iter_mut().flat_map(|tile| &mut tile.rgb);
-    for (sum, light) in sums.iter_mut().zip(planes.flatten()) {
-        *sum += *light;
-        *light = *sum / count as f32;
+    for (k, tile) in tiles.iter_mut().enumerate() {
+        for (i, plane) in tile.rgb.iter_mut().enumerate() {
+            let sums = &mut sums[(3 * k + i) * TILE * TILE..];
+            for (light, sum) in plane.iter_mut().zip(sums) {
+                *sum += *light;
+                *light = *sum * share;
+            }
+        }
     }
 }

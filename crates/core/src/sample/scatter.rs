@@ -22,6 +22,9 @@ use crate::scene::{Channel, Shading};
 use crate::shade;
 use crate::trace::{Rays8, Surface};
 
+/// Whether any rays are drawn at random.
+const RANDOM: bool = features::BOUNCES || features::ROUGH;
+
 /// Bits of a ray's seed that count its bounces.
 const BOUNCES: u32 = 3;
 
@@ -44,12 +47,12 @@ pub fn scattered(packet: &Packet) -> F {
 
 /// Lanes that were drawn at random.
 pub fn drawn(packet: &Packet) -> F {
-    if features::BOUNCES || features::ROUGH { has(packet.seed, DRAWN | BOUNCES) } else { F::ZERO }
+    if RANDOM { has(packet.seed, DRAWN | BOUNCES) } else { F::ZERO }
 }
 
 /// First seed of samples at these positions.
 pub fn seed(x: F, y: F) -> U {
-    if !(features::BOUNCES || features::ROUGH) {
+    if !RANDOM {
         return splat_u(0);
     }
     mix_x8(x.to_bits(), y.to_bits()) & splat_u(!(BOUNCES | DRAWN))
@@ -57,6 +60,9 @@ pub fn seed(x: F, y: F) -> U {
 
 /// The seed of a ray's `i`th offspring, of the same kind.
 pub fn offspring(seed: U, i: u32) -> U {
+    if !RANDOM {
+        return seed;
+    }
     let kind = splat_u(BOUNCES | DRAWN);
     (mix_x8(seed, splat_u(i)) & !kind) | (seed & kind)
 }
