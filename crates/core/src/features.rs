@@ -10,6 +10,12 @@ use crate::counters::Counter;
 pub const GGX: bool = cfg!(feature = "ggx");
 /// Relief from patterns.
 pub const BUMPS: bool = cfg!(feature = "bumps");
+/// Signed distance fields.
+pub const FIELDS: bool = cfg!(feature = "fields");
+/// Ambient occlusion by fields.
+pub const FIELD_OCCLUSION: bool = cfg!(feature = "field-occlusion");
+/// Beams of light.
+pub const BEAMS: bool = cfg!(feature = "beams");
 
 /// Bounces of diffuse light.
 pub const BOUNCES: bool = cfg!(feature = "bounces");
@@ -17,9 +23,12 @@ pub const BOUNCES: bool = cfg!(feature = "bounces");
 pub const ROUGH: bool = cfg!(feature = "rough");
 
 /// Each feature with the counter that shows it at work.
-pub const ALL: [(&str, Counter); 4] = [
+pub const ALL: [(&str, Counter); 7] = [
     ("ggx", Counter::Ggx),
     ("bumps", Counter::Bumps),
+    ("fields", Counter::FieldSteps),
+    ("field-occlusion", Counter::FieldOcclusion),
+    ("beams", Counter::Beams),
     ("bounces", Counter::ScatterRays),
     ("rough", Counter::RoughRays),
 ];

@@ -7,7 +7,7 @@
 use crate::counters::Counter;
 use crate::quality::{Quality, Rung};
 use crate::sample::ROUGH;
-use crate::scene::{LightKind, Material, Scene, Shading};
+use crate::scene::{Field, LightKind, Material, Scene, Shading};
 
 /// The machinery that a frame calls for, as the counters that it moves.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -16,7 +16,7 @@ pub struct Plan(Vec<Counter>);
 impl Plan {
     /// What `scene` calls for at `quality`.
     pub fn of(scene: &Scene, quality: &Quality) -> Plan {
-        let materials = || (0..scene.shape_count()).map(|i| &scene.materials[scene.shape(i).material()]);
+        let materials = || materials(scene);
         let lamps = !scene.lights.is_empty() || !scene.emitters.is_empty();
         let lit = lamps && materials().any(|m| m.diffuse > 0.0 || m.specular.max_element() > 0.0);
         let chains = quality.depth > 0;
@@ -40,6 +40,9 @@ impl Plan {
             (Counter::CylinderTests, !scene.cylinders.is_empty()),
             (Counter::ConeTests, !scene.cones.is_empty()),
             (Counter::TriangleTests, !scene.triangles.is_empty()),
+            (Counter::FieldTests, !scene.fields.is_empty()),
+            (Counter::FieldSteps, !scene.fields.is_empty()),
+            (Counter::FieldOcclusion, !scene.fields.is_empty() && scene.occlusion > 0.0),
             (Counter::ReflectedRays, mirrors),
             (Counter::RefractedRays, glass),
             (Counter::RoughRays, rough),
@@ -55,6 +58,7 @@ impl Plan {
             (Counter::TextureLookups, grain),
             (Counter::Bumps, bumps),
             (Counter::FogSegments, scene.fog.is_some()),
+            (Counter::Beams, !scene.beams.is_empty()),
             (Counter::KnownSurfaces, adaptive && known),
             (Counter::Traced, !adaptive || quality.smallest <= 1),
             (Counter::Interpolated, adaptive),
@@ -76,15 +80,26 @@ impl Plan {
     }
 }
 
+/// The materials of all shapes.
+fn materials(scene: &Scene) -> impl Iterator<Item = &Material> {
+    let shapes = (0..scene.shape_count()).map(|i| scene.shape(i).material());
+    let mixed = scene.fields.iter().flat_map(|field| &field.nodes).map(|node| node.material);
+    shapes.chain(mixed).map(|i| &scene.materials[i])
+}
+
 /// Named faults of a scene: data that its quality or the engine's limits can't show.
 pub fn warnings(scene: &Scene, quality: &Quality) -> Vec<&'static str> {
-    let materials = || (0..scene.shape_count()).map(|i| &scene.materials[scene.shape(i).material()]);
+    let materials = || materials(scene);
     let spot = |kind: LightKind| matches!(kind, LightKind::Spot { inner, outer, .. } if inner <= outer);
     let faults = [
         (quality.depth < 2 && materials().any(|m| m.is_transparent()), "glass needs a depth of two or more"),
         (quality.depth < 1 && materials().any(|m| m.reflection > 0.0), "mirrors need a depth of one or more"),
         (scene.lights.len() + scene.emitters.len() > 8, "lamps after the eighth cast no shadow"),
         (materials().filter(|m| m.is_transparent()).count() > 23, "glass after the 23rd casts no shadow"),
+        (
+            scene.fields.iter().any(|f| f.nodes.len() > Field::MOST),
+            "nodes of a field after the 32nd are not there",
+        ),
         (scene.lights.iter().any(|l| spot(l.kind)), "a spot's inner cone is wider than its outer one"),
         (scene.background.stops.windows(2).any(|s| s[0].y >= s[1].y), "the sky's stops do not ascend"),
     ];

@@ -38,6 +38,11 @@ pub struct Quality {
     pub rough: u32,
     /// Rays whose contribution is at most this are not followed, in units of display white.
     pub cutoff: f32,
+    /// How near to a field a ray must come to hit it, world units at the ray's origin; it grows
+    /// with the distance: `epsilon * (1 + t)`.
+    pub epsilon: f32,
+    /// Most steps of a ray that marches; one that is near a body by then has hit it.
+    pub steps: u32,
     /// Leave out shapes and occluders that a tile can't meet. Changes the time, never the picture.
     pub cull: bool,
     /// Frames with different sample patterns that are averaged: 1, more for a still.
@@ -61,6 +66,8 @@ impl Quality {
                 scatter: 0,
                 rough: 0,
                 cutoff: 0.1,
+                epsilon: 2e-3,
+                steps: 48,
                 cull: true,
                 average: 1,
             },
@@ -79,6 +86,8 @@ impl Quality {
                 scatter: 0,
                 rough: 0,
                 cutoff: 0.06,
+                epsilon: 1e-3,
+                steps: 64,
                 cull: true,
                 average: 1,
             },
@@ -97,6 +106,8 @@ impl Quality {
                 scatter: 0,
                 rough: 0,
                 cutoff: 0.04,
+                epsilon: 5e-4,
+                steps: 96,
                 cull: true,
                 average: 1,
             },
@@ -115,6 +126,8 @@ impl Quality {
                 scatter: 0,
                 rough: 0,
                 cutoff: 0.02,
+                epsilon: 3e-4,
+                steps: 128,
                 cull: true,
                 average: 1,
             },
@@ -133,6 +146,8 @@ impl Quality {
                 scatter: 4,
                 rough: 4,
                 cutoff: 0.01,
+                epsilon: 2e-4,
+                steps: 192,
                 cull: true,
                 average: 1,
             },
@@ -151,6 +166,8 @@ impl Quality {
                 scatter: 4,
                 rough: 4,
                 cutoff: 0.001,
+                epsilon: 1e-4,
+                steps: 384,
                 cull: true,
                 average: 1,
             },

@@ -4,7 +4,7 @@ use super::Stage;
 use crate::counters::Counters;
 use crate::post::Bloom;
 use crate::quality::Quality;
-use crate::sample::{Scratch, TILE, Tile, refine, share_edges, smooth_edges};
+use crate::sample::{Scratch, TILE, Tile, beams, refine, share_edges, smooth_edges};
 use crate::scene::Scene;
 use crate::{parallel, post};
 use glam::Vec2;
@@ -58,7 +58,7 @@ impl Renderer {
         let down = (height as usize).div_ceil(TILE);
         self.tiles.resize_with(across * down, Tile::default);
         let pool = &self.scratch;
-        let passes: [Pass; 2] = [refine, smooth_edges];
+        let passes: [Pass; 3] = [refine, smooth_edges, beams];
         self.counters = Counters::default();
         let mut sums = Vec::new();
         for pattern in 0..quality.average {

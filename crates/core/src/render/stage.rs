@@ -1,6 +1,6 @@
 //! A scene made ready for one frame: what every ray asks for, computed once.
 
-use crate::cull::{Dop, Shaft, View, dops, shafts};
+use crate::cull::{Dop, FieldNode, Shaft, View, dops, field_nodes, shafts};
 use crate::math::lanes::{F, V3, splat};
 use crate::post::Display;
 use crate::quality::{Quality, Rung};
@@ -35,6 +35,10 @@ pub struct Stage<'a> {
     pub tints: Vec<Vec3>,
     /// Bounds of the shapes on the screen.
     pub dops: Vec<Dop>,
+    /// Bounds of the bodies that fields are joined of.
+    pub nodes: Vec<FieldNode>,
+    /// Bounds of the beams on the screen.
+    pub beams: Vec<Dop>,
     /// Bounds of the shapes as the lamps that cast shadows see them.
     pub shafts: Vec<Vec<Shaft>>,
     /// From linear light to display values.
@@ -63,6 +67,7 @@ impl<'a> Stage<'a> {
         }
         let lamps = lamps(scene);
         let shafts = lamps.iter().take(MAX_LAMPS).map(|lamp| shafts(scene, lamp)).collect();
+        let pixel = 2.0 * scene.camera.half_width() / width as f32;
         Self {
             scene,
             quality: *quality,
@@ -70,8 +75,10 @@ impl<'a> Stage<'a> {
             height,
             pattern: 0,
             shift: Vec2::ZERO,
-            pixel: 2.0 * scene.camera.half_width() / width as f32,
+            pixel,
             dops: dops(scene, &view),
+            nodes: field_nodes(scene, &view),
+            beams: scene.beams.iter().map(|beam| Dop::of_beam(&view, beam, pixel)).collect(),
             view,
             lamps,
             bits,
@@ -109,9 +116,16 @@ impl<'a> Stage<'a> {
         (right * x + up * y + forward).normalize()
     }
 
-    /// Whether direct light is computed at each pixel, so that only the rest is interpolated.
-    pub fn exact_surface(&self) -> bool {
-        self.quality.rung == Rung::Surface
+    /// What is interpolated on the shape with this hit id. Where a field's surface lies between the
+    /// samples is not known without marching: there it is the colour.
+    pub fn rung(&self, id: f32) -> Rung {
+        let fields = self.scene.shape_count() - self.scene.fields.len();
+        if id >= 0.0 && id as usize >> 2 >= fields { Rung::Colour } else { self.quality.rung }
+    }
+
+    /// Whether the shape is a field without finite bodies, which can't be bounded.
+    pub fn endless(&self, index: usize) -> bool {
+        matches!(self.scene.shape(index), Shape::Field(f) if f.nodes.iter().all(|n| n.core().is_none()))
     }
 
     /// Mask of the shapes that may show in the square of `side` px at `corner`, see

@@ -10,6 +10,7 @@ use super::scatter;
 use super::tile::{Kind, Record, TILE, Tile};
 use super::wave::soft;
 use crate::counters::{Counter, Counters};
+use crate::features;
 use crate::math::lanes::{F, LANE_INDEX, U, V3, splat, splat_u};
 use crate::quality::Rung;
 use crate::render::Stage;
@@ -72,9 +73,12 @@ pub(super) fn fill(
     let rung = match (smooth, textured) {
         _ if first.relief_within(stage, cell.size) => Rung::Surface,
         (true, false) => Rung::Colour,
-        (true, true) => stage.quality.rung.min(Rung::Light),
-        (false, _) => stage.quality.rung,
+        (true, true) => stage.rung(first.id()).min(Rung::Light),
+        (false, _) => stage.rung(first.id()),
     };
+    if features::BEAMS && !stage.scene.beams.is_empty() {
+        fill_nearness(cell, known, tile);
+    }
     let scale = splat(1.0 / cell.size as f32);
     let shift = cell.size.trailing_zeros();
     let patch = match rung {
@@ -118,6 +122,17 @@ pub(super) fn fill(
     }
 }
 
+/// Depths between the corners: over a plane, one over the depth is linear on the screen.
+fn fill_nearness(cell: Cell, known: &Corners, tile: &mut Tile) {
+    let [a, b, c, d] = known.corners.map(|s| 1.0 / s.depth());
+    for i in 0..cell.size * cell.size {
+        let (column, row) = (i % cell.size, i / cell.size);
+        let (x, y) = (column as f32 / cell.size as f32, row as f32 / cell.size as f32);
+        let (upper, lower) = (a + (b - a) * x, c + (d - c) * x);
+        tile.nearness[(cell.y + row) * TILE + cell.x + column] = upper + (lower - upper) * y;
+    }
+}
+
 /// Whole numbers under 2^23 as f32: in the low bits of 2^23, which is then taken off.
 fn small(i: U) -> F {
     F::from_bits(i | splat_u(0x4b00_0000)) - splat(8_388_608.0)
@@ -125,20 +140,24 @@ fn small(i: U) -> F {
 
 /// Rays through pixels, and where they meet the shape of `first` (0 where they don't).
 #[inline(never)]
-fn meet(stage: &Stage, first: Sample, px: F, py: F) -> (Rays8, F) {
+fn meet(stage: &Stage, first: Sample, px: F, py: F, counters: &mut Counters) -> (Rays8, F) {
     let rays = Rays8 { origin: V3::splat(stage.scene.camera.position), direction: stage.directions(px, py) };
     if first.id() < 0.0 {
         return (rays, splat(f32::INFINITY));
     }
-    let (t, _) = stage.scene.shape(first.id() as usize >> 2).span(&rays).first();
+    let (t, _) = stage
+        .scene
+        .shape(first.id() as usize >> 2)
+        .span(&rays, splat(f32::INFINITY), &stage.quality, counters)
+        .first();
     (rays, t.simd_gt(F::ZERO).select(t, splat(first.depth())))
 }
 
 /// Albedo of the known shape at pixels.
 fn albedo(stage: &Stage, first: Sample, px: F, py: F, counters: &mut Counters) -> V3 {
     counters.add(Counter::KnownSurfaces, 8);
-    let (rays, t) = meet(stage, first, px, py);
-    let s = surface(stage.scene, &rays, t, splat(first.id()), splat(stage.pixel));
+    let (rays, t) = meet(stage, first, px, py, counters);
+    let s = surface(stage.scene, &stage.quality, &rays, t, splat(first.id()), splat(stage.pixel));
     s.count(counters);
     s.colour(Channel::Colour)
 }
@@ -148,14 +167,14 @@ fn albedo(stage: &Stage, first: Sample, px: F, py: F, counters: &mut Counters) -
 #[inline(never)]
 fn known_surface(stage: &Stage, first: Sample, px: F, py: F, counters: &mut Counters) -> V3 {
     counters.add(Counter::KnownSurfaces, 8);
-    let (rays, t) = meet(stage, first, px, py);
+    let (rays, t) = meet(stage, first, px, py, counters);
     let spread = splat(stage.pixel);
     let light = if first.id() <= NONE {
         counters.add(Counter::DiscTests, 8 * stage.scene.background.discs.len());
         counters.add(Counter::Glows, 8 * stage.scene.background.glows.len());
         shade::background(&stage.scene.background, &rays, spread, soft(stage, spread), F::ZERO).0
     } else {
-        let s = surface(stage.scene, &rays, t, splat(first.id()), spread);
+        let s = surface(stage.scene, &stage.quality, &rays, t, splat(first.id()), spread);
         s.count(counters);
         let mut codes = first.codes();
         let view = -rays.direction;
@@ -163,7 +182,7 @@ fn known_surface(stage: &Stage, first: Sample, px: F, py: F, counters: &mut Coun
         let lit = shade::direct(stage, &s, view, all, Visibility::Known, &mut codes, counters);
         let split = shade::split(stage.scene.shading, &s, rays.direction);
         let bounces = scatter::bounces(stage, splat_u(0), &s, 0);
-        let local = shade::local(stage, &s, &split, lit, bounces);
+        let local = shade::local(stage, &s, &split, lit, (all, bounces), counters);
         local.irradiance * s.colour(Channel::Colour) + local.rest
     };
     match &stage.scene.fog {

@@ -70,7 +70,8 @@ impl Boxes {
             let (lo, hi) = (fold(lo, Vec3::min), fold(hi, Vec3::max));
             // Shadow rays start at the points as put back onto the surface, a clearance off.
             let reach = lo.abs().max(hi.abs()).length() + stage.scene.camera.position.length();
-            let region = Region::cuboid(lo, hi, 4e-6 * reach);
+            let off = if stage.scene.fields.is_empty() { 0.0 } else { 4.0 * stage.quality.epsilon };
+            let region = Region::cuboid(lo, hi, 4e-6 * reach + off);
             for (mask, shafts) in masks.iter_mut().zip(&stage.shafts) {
                 *mask |= occluders(stage.scene, shafts, !*mask, Some(shape as usize), &region);
             }
@@ -141,7 +142,9 @@ pub(super) fn soft(stage: &Stage, spread: F) -> F {
 fn step(stage: &Stage, scratch: &mut Scratch, candidates: u64, level: u32) {
     let Scratch { samples, counters, rays, next, hits, occluders: boxes, ways, .. } = scratch;
     hits.clear();
-    hits.extend(rays.packets.iter().map(|p| nearest(stage.scene, &p.rays, candidates, counters)));
+    hits.extend(
+        rays.packets.iter().map(|p| nearest(stage.scene, &stage.quality, &p.rays, candidates, counters)),
+    );
 
     let mut shadows = [u64::MAX; MAX_LAMPS];
     if stage.quality.cull && hits.len() >= CULL_FROM {
@@ -207,6 +210,8 @@ struct Found {
     normal: V3,
     codes: Codes,
     signature: F,
+    node: F,
+    part: F,
 }
 
 /// Light that the rays of a packet find at their hits, and the rays that go on from there.
@@ -233,6 +238,13 @@ fn shade_packet(
         let (through, scattered) = shade::fog(fog, rays, hit.t);
         light += weight * scattered;
         weight = weight * through;
+    }
+    if features::BEAMS && level > 0 {
+        // What the eye sees of them straight is added to the finished pixels.
+        counters.add(Counter::Beams, 8 * scene.beams.len());
+        for beam in &scene.beams {
+            light += packet.weight * shade::beam(beam, rays, spread, hit.t);
+        }
     }
     if level > 0 && !scene.emitters.is_empty() && !scattered.all() {
         counters.add(Counter::EmitterTests, 8 * scene.emitters.len());
@@ -268,13 +280,15 @@ fn shade_packet(
         normal: zero,
         codes: [F::ZERO; MAX_LAMPS],
         signature,
+        node: F::ZERO,
+        part: F::ZERO,
     };
     if !solid.any() {
         return found;
     }
 
     let t = solid.select(hit.t, F::ZERO);
-    let mut s = surface(scene, rays, t, solid.select(hit.id, splat(NONE)), spread);
+    let mut s = surface(scene, &stage.quality, rays, t, solid.select(hit.id, splat(NONE)), spread);
     if features::BOUNCES {
         // Highlights in what a bounce sees would be sparks.
         let roughness = &mut s.material[Channel::Roughness as usize];
@@ -286,13 +300,14 @@ fn shade_packet(
     let lit = shade::direct(stage, &s, view, solid, trace, &mut found.codes, counters);
     let split = shade::split(scene.shading, &s, rays.direction);
     let bounces = scatter::bounces(stage, *seed, &s, level) & solid;
-    let local = shade::local(stage, &s, &split, lit, bounces);
+    let local = shade::local(stage, &s, &split, lit, (solid, bounces), counters);
     let seen = weight & solid;
     found.albedo = s.colour(Channel::Colour);
     found.irradiance = seen * local.irradiance;
     found.light += found.irradiance * found.albedo + seen * local.rest;
     found.point = s.point;
     found.normal = s.normal;
+    (found.node, found.part) = (s.node, s.part);
 
     let facing = V3::select(s.inside, -s.outward, s.outward);
     let offset = facing * s.clearance;
@@ -343,7 +358,7 @@ fn shade_packet(
 impl Found {
     /// Hash of what each lane saw.
     fn hash(&self, stage: &Stage) -> U {
-        let mut h = mix_x8(self.id.to_bits(), self.signature.to_bits());
+        let mut h = mix_x8(self.id.to_bits() ^ self.part.to_bits(), self.signature.to_bits());
         for code in &self.codes[..stage.lamps.len().min(MAX_LAMPS)] {
             h = mix_x8(h, code.to_bits());
         }
@@ -364,6 +379,7 @@ impl Found {
             depth: self.depth * packet.rays.direction.dot(V3::splat(stage.forward())),
             point: self.point,
             normal: self.normal,
+            node: self.node,
             codes: self.codes,
         }
     }

@@ -2,10 +2,12 @@
 //!
 //! A scene is made anew for each frame by the show's pure functions of time. Shapes of all kinds
 //! share one index space, [`Scene::shape_count`] long: spheres first, then planes, cylinders,
-//! cones and triangles, each in list order. Right-handed, y up, world units.
+//! cones, triangles and fields, each in list order. Right-handed, y up, world units.
 
 mod background;
+mod beam;
 mod camera;
+mod field;
 mod light;
 mod material;
 mod shapes;
@@ -13,9 +15,11 @@ mod texture;
 mod track;
 
 pub use background::{Background, Disc, Glow, Stop};
+pub use beam::Beam;
 pub use camera::Camera;
+pub use field::{Field, Form, Join, Node};
 pub use light::{Emitter, Light, LightKind};
-pub use material::{Channel, Material};
+pub use material::{Channel, Fire, Material};
 pub use shapes::{Cone, Cylinder, Plane, Sphere, Triangle};
 pub use texture::{Pattern, Texture};
 pub use track::{Ease, Key, track};
@@ -102,12 +106,19 @@ pub struct Scene {
     pub cones: Vec<Cone>,
     /// Single triangles.
     pub triangles: Vec<Triangle>,
+    /// Bodies as signed distance fields.
+    pub fields: Vec<Field>,
+    /// Distance up to which fields take ambient light from what is near them, world units; 0 for
+    /// not at all.
+    pub occlusion: f32,
     /// What shapes are made of; shapes hold indices into this list.
     pub materials: Vec<Material>,
     /// Lamps that are not seen themselves.
     pub lights: Vec<Light>,
     /// Rectangles that shine; seen in mirrors and through glass.
     pub emitters: Vec<Emitter>,
+    /// Beams of light in the haze; they light nothing themselves.
+    pub beams: Vec<Beam>,
     /// The reflection model for direct light.
     pub shading: Shading,
     /// Bounces of diffuse light that rays follow where the quality has samples for them, 0 to 3; after
@@ -131,5 +142,6 @@ impl Scene {
             + self.cylinders.len()
             + self.cones.len()
             + self.triangles.len()
+            + self.fields.len()
     }
 }

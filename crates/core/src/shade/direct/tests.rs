@@ -23,6 +23,8 @@ fn surface(roughness: f32, exponent: f32) -> Surface {
         outward: up,
         inside: FALSE,
         clearance: F::ZERO,
+        node: F::ZERO,
+        part: F::ZERO,
         material: material.channels().map(splat),
     }
 }

@@ -16,6 +16,8 @@ fn glass(normal: V3, facing: V3, inside: bool, ior: f32, f0: f32) -> Surface {
         outward: V3::select(inside, -facing, facing),
         inside,
         clearance: ZERO,
+        node: ZERO,
+        part: ZERO,
         material: material.channels().map(splat),
     }
 }

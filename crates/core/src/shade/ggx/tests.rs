@@ -20,6 +20,8 @@ fn surface(roughness: f32, f0: Vec3) -> Surface {
         outward: up,
         inside: FALSE,
         clearance: F::ZERO,
+        node: F::ZERO,
+        part: F::ZERO,
         material: material.channels().map(splat),
     }
 }
