@@ -22,14 +22,8 @@ use glam::Vec3;
 /// Half an output step: colours closer than this display the same.
 const SAME: f32 = 0.5 / 255.0;
 
-/// A value over a cell, as bilinear coefficients.
-struct Patch {
-    a: V3,
-    b: V3,
-    c: V3,
-    d: V3,
-    bump: V3,
-}
+/// A value over a cell: at the corners, and the bump.
+struct Patch([Vec3; 5]);
 
 impl Patch {
     #[inline(never)]
@@ -37,14 +31,14 @@ impl Patch {
         let [a, b, c, d] = known.corners.map(value);
         let mean = (a + b + c + d) * 0.25;
         let bump = known.centre.map_or(Vec3::ZERO, |s| (value(s) - mean) * 16.0);
-        Patch { a: V3::splat(a), b: V3::splat(b), c: V3::splat(c), d: V3::splat(d), bump: V3::splat(bump) }
+        Patch([a, b, c, d, bump])
     }
 
     fn at(&self, x: F, y: F) -> V3 {
-        let upper = self.a + (self.b - self.a) * x;
-        let lower = self.c + (self.d - self.c) * x;
-        let bump = x * (F::ONE - x) * y * (F::ONE - y);
-        upper + (lower - upper) * y + self.bump * bump
+        let [a, b, c, d, bump] = self.0.map(V3::splat);
+        let upper = a + (b - a) * x;
+        let lower = c + (d - c) * x;
+        upper + (lower - upper) * y + bump * (x * (F::ONE - x) * y * (F::ONE - y))
     }
 }
 
@@ -81,14 +75,16 @@ pub(super) fn fill(
     }
     let scale = splat(1.0 / cell.size as f32);
     let shift = cell.size.trailing_zeros();
-    let patch = match rung {
-        Rung::Colour => Patch::of(known, |s| s.colour()),
-        Rung::Light if textured => Patch::of(known, |s| s.colour() - s.irradiance() * s.albedo()),
-        Rung::Light => Patch::of(known, |s| s.colour()),
-        Rung::Surface => Patch::of(known, |s| s.indirect()),
-    };
+    let patch = Patch::of(
+        known,
+        match rung {
+            Rung::Light if textured => |s| s.colour() - s.irradiance() * s.albedo(),
+            Rung::Colour | Rung::Light => |s| s.colour(),
+            Rung::Surface => |s| s.indirect(),
+        },
+    );
     let light = (rung == Rung::Light && textured).then(|| Patch::of(known, |s| s.irradiance()));
-    for base in (0..count).step_by(8) {
+    for base in (0..count.div_ceil(8)).map(|i| 8 * i) {
         let place = |lane: usize| {
             let i = base + lane;
             (i & (cell.size - 1), i >> shift)

@@ -11,7 +11,6 @@
 //! are lit by lamps anyway.
 
 use super::rays::Packet;
-use super::wave::Way;
 use crate::counters::Counter;
 use crate::features;
 use crate::math::hash::mix_x8;
@@ -21,6 +20,16 @@ use crate::render::Stage;
 use crate::scene::{Channel, Shading};
 use crate::shade;
 use crate::trace::{Rays8, Surface};
+
+/// Rays that go on from a packet's hits.
+pub struct Way {
+    /// The rays.
+    pub rays: Packet,
+    /// Lanes that have such a ray, lane 0 lowest.
+    pub which: u32,
+    /// What counts them.
+    pub counter: Counter,
+}
 
 /// Whether any rays are drawn at random.
 const RANDOM: bool = features::BOUNCES || features::ROUGH;

@@ -6,15 +6,15 @@
 
 use super::block::{Block, Samples};
 use super::rays::{Packet, RayList};
-use super::scatter;
+use super::scatter::{self, Way};
 use crate::counters::{Counter, Counters};
 use crate::cull::{Region, occluders};
 use crate::features;
 use crate::math::hash::mix_x8;
-use crate::math::lanes::{F, U, V3, splat, splat_u};
+use crate::math::lanes::{F, U, V3, splat};
 use crate::render::Stage;
 use crate::scene::{Channel, Shading};
-use crate::shade::{self, Codes, MAX_LAMPS, Visibility};
+use crate::shade::{self, MAX_LAMPS, Visibility};
 use crate::trace::{Hits, NONE, Rays8, nearest, surface};
 use glam::Vec3;
 
@@ -30,7 +30,6 @@ pub struct Scratch {
     rays: RayList,
     next: RayList,
     hits: Vec<Hits>,
-    ways: Vec<Way>,
     occluders: Boxes,
 }
 
@@ -140,7 +139,7 @@ pub(super) fn soft(stage: &Stage, spread: F) -> F {
 /// there to `scratch.next`.
 #[inline(never)]
 fn step(stage: &Stage, scratch: &mut Scratch, candidates: u64, level: u32) {
-    let Scratch { samples, counters, rays, next, hits, occluders: boxes, ways, .. } = scratch;
+    let Scratch { samples, counters, rays, next, hits, occluders: boxes, .. } = scratch;
     hits.clear();
     hits.extend(
         rays.packets.iter().map(|p| nearest(stage.scene, &stage.quality, &p.rays, candidates, counters)),
@@ -155,14 +154,16 @@ fn step(stage: &Stage, scratch: &mut Scratch, candidates: u64, level: u32) {
         shadows = boxes.candidates(stage);
     }
 
+    let mut found = Found::default();
     for (k, hit) in hits.iter().enumerate() {
         let packet = &rays.packets[k];
+        shade_packet(stage, packet, hit, level, &shadows, &mut found, counters);
         let owners = rays.owners(k);
-        ways.clear();
-        let found = shade_packet(stage, packet, hit, level, &shadows, ways, counters);
         let hash = found.hash(stage);
         if level == 0 {
-            samples.0.push(found.block(stage, packet, hash));
+            found.block.surface = hash;
+            found.block.direct = found.block.colour;
+            samples.0.push(found.block);
         } else {
             // What drawn rays meet differs from sample to sample.
             let drawn = scatter::drawn(packet).to_bitmask();
@@ -171,47 +172,27 @@ fn step(stage: &Stage, scratch: &mut Scratch, candidates: u64, level: u32) {
                 let id = samples.get(owner as usize).id();
                 let deep = level == 1 || (level == 2 && id >= 0.0 && stage.bits[id as usize >> 2] > 0.0);
                 let hash = (deep && drawn >> lane & 1 == 0).then_some(hash.as_array()[lane]);
-                samples.add(owner as usize, found.light.lane(lane), hash);
+                samples.add(owner as usize, found.block.colour.lane(lane), hash);
             }
         }
-        // Sample by sample, so that each one's rays keep their order however lists are cut.
-        for (lane, &owner) in owners.iter().enumerate() {
-            for way in ways.iter().filter(|way| way.which >> lane & 1 == 1) {
-                counters.add(way.counter, 1);
-                if way.counter == Counter::RoughRays {
-                    counters.add(Counter::ReflectedRays, 1);
-                }
-                next.push(lane, &way.rays, owner);
-            }
+        if level < stage.quality.depth {
+            found.spawn(stage, owners, next, counters);
         }
     }
 }
 
-/// Rays that go on from a packet's hits.
-pub(super) struct Way {
-    /// The rays, with the indices of their ancestors' samples.
-    pub rays: Packet,
-    /// Lanes that have such a ray, lane 0 lowest.
-    pub which: u32,
-    /// What counts them.
-    pub counter: Counter,
-}
-
-/// What a packet's rays found: light for their samples.
+/// What a packet's rays found.
+#[derive(Default)]
 struct Found {
-    /// Weighted light, all of it.
-    light: V3,
-    /// Weighted light on the surface, before its albedo.
-    irradiance: V3,
-    albedo: V3,
-    id: F,
-    depth: F,
-    point: V3,
-    normal: V3,
-    codes: Codes,
-    signature: F,
-    node: F,
+    /// The hits, and their weighted light, as samples of their own; `surface` and `direct` are left
+    /// open, and `signature` holds what was seen of shining rectangles.
+    block: Block,
+    /// Which part of its field each lane has hit.
     part: F,
+    /// Mirrored and refracted rays, which go on from the hits.
+    onward: [Packet; 2],
+    /// Rays that were drawn at random, before those.
+    drawn: Vec<Way>,
 }
 
 /// Light that the rays of a packet find at their hits, and the rays that go on from there.
@@ -222,9 +203,9 @@ fn shade_packet(
     hit: &Hits,
     level: u32,
     shadows: &[u64; MAX_LAMPS],
-    ways: &mut Vec<Way>,
+    found: &mut Found,
     counters: &mut Counters,
-) -> Found {
+) {
     let scene = stage.scene;
     let Packet { rays, spread, seed, .. } = packet;
     let (spread, scattered, drawn) = (*spread, scatter::scattered(packet), scatter::drawn(packet));
@@ -270,21 +251,18 @@ fn shade_packet(
         light += weight * shade::ambient(stage, rays.direction) * blur;
         weight = weight * (F::ONE - blur);
     }
-    let mut found = Found {
-        light,
-        irradiance: zero,
-        albedo: zero,
-        id,
-        depth: hit.t,
-        point: zero,
-        normal: zero,
-        codes: [F::ZERO; MAX_LAMPS],
-        signature,
-        node: F::ZERO,
-        part: F::ZERO,
-    };
+    let Found { block, part, onward, drawn: ways } = found;
+    ways.clear();
+    *part = F::ZERO;
+    *block = Block::default();
+    block.colour = light;
+    block.signature = signature.to_bits();
+    block.id = id;
+    block.depth = hit.t * rays.direction.dot(V3::splat(stage.forward()));
+    onward[0].weight = zero;
+    onward[1].weight = zero;
     if !solid.any() {
-        return found;
+        return;
     }
 
     let t = solid.select(hit.t, F::ZERO);
@@ -297,90 +275,85 @@ fn shade_packet(
     s.count(counters);
     let view = -rays.direction;
     let trace = Visibility::Trace(shadows);
-    let lit = shade::direct(stage, &s, view, solid, trace, &mut found.codes, counters);
+    let lit = shade::direct(stage, &s, view, solid, trace, &mut block.codes, counters);
     let split = shade::split(scene.shading, &s, rays.direction);
     let bounces = scatter::bounces(stage, *seed, &s, level) & solid;
     let local = shade::local(stage, &s, &split, lit, (solid, bounces), counters);
     let seen = weight & solid;
-    found.albedo = s.colour(Channel::Colour);
-    found.irradiance = seen * local.irradiance;
-    found.light += found.irradiance * found.albedo + seen * local.rest;
-    found.point = s.point;
-    found.normal = s.normal;
-    (found.node, found.part) = (s.node, s.part);
+    block.albedo = s.colour(Channel::Colour);
+    block.irradiance = seen * local.irradiance;
+    block.colour += block.irradiance * block.albedo + seen * local.rest;
+    block.point = s.point;
+    block.normal = s.normal;
+    (block.node, *part) = (s.node, s.part);
 
     let facing = V3::select(s.inside, -s.outward, s.outward);
     let offset = facing * s.clearance;
     let m = s.value(Channel::Roughness);
     let spread = spread + m * m * splat(6.0);
-    let mut mirror = seen * split.reflectance * s.value(Channel::Reflection);
     let one = V3::splat(Vec3::ONE);
+    let mut reflected = seen * split.reflectance * s.value(Channel::Reflection);
     let passed = (one - split.reflectance) * s.value(Channel::Transparency);
-    let enter = (seen & !split.total) * passed * s.colour(Channel::Tint);
+    let mut refracted = (seen & !split.total) * passed * s.colour(Channel::Tint);
     let outside = s.point + offset;
-
     if bounces.any() {
-        let weight = seen * local.kept * found.albedo;
+        let weight = seen * local.kept * block.albedo;
         scatter::bounce(stage, &s, outside, (weight, bounces), (packet, level), ways);
     }
     let rough = scatter::rough(stage, &s, level) & solid;
     if rough.any() {
         let weight = seen * s.value(Channel::Reflection);
         scatter::mirror(stage, &s, outside, (weight, rough), packet, ways);
-        mirror = mirror & !rough;
+        reflected = reflected & !rough;
     }
     let cut = if level == stage.quality.depth { solid } else { scattered & solid };
     if cut.any() {
         // Where the chain is cut, the mean light in place of what the rays would find.
-        let mirrored = mirror * shade::ambient(stage, split.mirrored);
-        let refracted = enter * shade::ambient(stage, split.refracted);
+        let mirrored = reflected * shade::ambient(stage, split.mirrored);
+        let through = refracted * shade::ambient(stage, split.refracted);
         // Lanes without such a ray have no direction either.
-        found.light += (mirrored & cut) + (refracted & (cut & !split.total));
+        block.colour += (mirrored & cut) + (through & (cut & !split.total));
+        (reflected, refracted) = (reflected & !cut, refracted & !cut);
     }
-    // Only what may add something visible is followed.
-    let cutoff = splat(stage.quality.cutoff / scene.grade.exposure);
-    for (i, (origin, direction, weight, counter)) in [
-        (outside, split.mirrored, mirror, Counter::ReflectedRays),
-        (s.point - offset, split.refracted, enter, Counter::RefractedRays),
-    ]
-    .into_iter()
-    .enumerate()
-    {
-        let worth = weight.x.fast_max(weight.y).fast_max(weight.z).simd_gt(cutoff) & !cut;
-        let seed = scatter::offspring(*seed, 64 + i as u32);
-        let rays =
-            Packet { rays: Rays8 { origin, direction }, weight, spread, seed, samples: packet.samples };
-        ways.push(Way { rays, which: worth.to_bitmask(), counter });
-    }
-    found
+    onward[0].rays = Rays8 { origin: outside, direction: split.mirrored };
+    onward[0].weight = reflected;
+    onward[0].seed = scatter::offspring(*seed, 64);
+    onward[1].seed = scatter::offspring(*seed, 65);
+    onward[0].spread = spread;
+    onward[1].rays = Rays8 { origin: s.point - offset, direction: split.refracted };
+    onward[1].weight = refracted;
+    onward[1].spread = spread;
 }
 
 impl Found {
     /// Hash of what each lane saw.
     fn hash(&self, stage: &Stage) -> U {
-        let mut h = mix_x8(self.id.to_bits() ^ self.part.to_bits(), self.signature.to_bits());
-        for code in &self.codes[..stage.lamps.len().min(MAX_LAMPS)] {
+        let mut h = mix_x8(self.block.id.to_bits() ^ self.part.to_bits(), self.block.signature);
+        for code in &self.block.codes[..stage.lamps.len().min(MAX_LAMPS)] {
             h = mix_x8(h, code.to_bits());
         }
         h
     }
 
-    /// The samples whose first hits these are.
-    fn block(&self, stage: &Stage, packet: &Packet, hash: U) -> Block {
-        Block {
-            colour: self.light,
-            direct: self.light,
-            irradiance: self.irradiance,
-            albedo: self.albedo,
-            display: V3::ZERO,
-            surface: hash,
-            signature: splat_u(0),
-            id: self.id,
-            depth: self.depth * packet.rays.direction.dot(V3::splat(stage.forward())),
-            point: self.point,
-            normal: self.normal,
-            node: self.node,
-            codes: self.codes,
+    /// Appends the rays that go on, if what they may add is worth it.
+    #[inline(never)]
+    fn spawn(&self, stage: &Stage, owners: &[u32], next: &mut RayList, counters: &mut Counters) {
+        let cutoff = splat(stage.quality.cutoff / stage.scene.grade.exposure);
+        let worth = |w: V3| w.x.fast_max(w.y).fast_max(w.z).simd_gt(cutoff).to_bitmask();
+        for (lane, &sample) in owners.iter().enumerate() {
+            for way in self.drawn.iter().filter(|way| way.which >> lane & 1 == 1) {
+                counters.add(way.counter, 1);
+                if way.counter == Counter::RoughRays {
+                    counters.add(Counter::ReflectedRays, 1);
+                }
+                next.push(&way.rays, lane, sample);
+            }
+            for (rays, counter) in self.onward.iter().zip([Counter::ReflectedRays, Counter::RefractedRays]) {
+                if worth(rays.weight) >> lane & 1 == 1 {
+                    counters.add(counter, 1);
+                    next.push(rays, lane, sample);
+                }
+            }
         }
     }
 }

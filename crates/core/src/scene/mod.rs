@@ -74,18 +74,23 @@ pub struct Grade {
     pub grain: f32,
 }
 
+impl Grade {
+    /// Nothing but the dither.
+    pub const DEFAULT: Self = Self {
+        exposure: 1.0,
+        bloom_threshold: 1.0,
+        bloom: 0.0,
+        lift: Vec3::ZERO,
+        gamma: Vec3::ONE,
+        gain: Vec3::ONE,
+        vignette: 0.0,
+        grain: 0.5 / 255.0,
+    };
+}
+
 impl Default for Grade {
     fn default() -> Self {
-        Self {
-            exposure: 1.0,
-            bloom_threshold: 1.0,
-            bloom: 0.0,
-            lift: Vec3::ZERO,
-            gamma: Vec3::ONE,
-            gain: Vec3::ONE,
-            vignette: 0.0,
-            grain: 0.5 / 255.0,
-        }
+        Self::DEFAULT
     }
 }
 
