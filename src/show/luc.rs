@@ -10,7 +10,7 @@ const SPREAD: [Key; 3] =
     [key(0.0, 0.0, Ease::Smooth), key(0.8, 1.1, Ease::Smooth), key(1.6, 1.0, Ease::Step)];
 
 /// How far the beam has come before the first letter, x over seconds.
-const HEAD: [Key; 2] = [key(0.0, -5.0, Ease::Linear), key(1.0, -3.46, Ease::Step)];
+const HEAD: [Key; 2] = [key(0.0, -4.75, Ease::Linear), key(1.0, -3.46, Ease::Step)];
 
 /// Light of the night over seconds.
 const NIGHT: [Key; 2] = [key(0.0, 0.2, Ease::Smooth), key(1.0, 1.0, Ease::Step)];
