@@ -6,7 +6,9 @@
 
 use super::block::Sample;
 use super::refine::{Cell, Corners};
+use super::scatter;
 use super::tile::{Kind, Record, TILE, Tile};
+use super::wave::soft;
 use crate::counters::{Counter, Counters};
 use crate::features;
 use crate::math::lanes::{F, LANE_INDEX, U, V3, splat, splat_u};
@@ -164,7 +166,7 @@ fn known_surface(stage: &Stage, first: Sample, px: F, py: F, counters: &mut Coun
     let light = if first.id() <= NONE {
         counters.add(Counter::DiscTests, 8 * stage.scene.background.discs.len());
         counters.add(Counter::Glows, 8 * stage.scene.background.glows.len());
-        shade::background(&stage.scene.background, &rays, spread).0
+        shade::background(&stage.scene.background, &rays, spread, soft(stage, spread), F::ZERO).0
     } else {
         let s = surface(stage.scene, &stage.quality, &rays, t, splat(first.id()), spread);
         s.count(counters);
@@ -172,14 +174,9 @@ fn known_surface(stage: &Stage, first: Sample, px: F, py: F, counters: &mut Coun
         let view = -rays.direction;
         let all = F::ZERO.simd_gt(splat(-1.0));
         let lit = shade::direct(stage, &s, view, all, Visibility::Known, &mut codes, counters);
-        let local = shade::local(
-            stage,
-            &s,
-            &shade::split(stage.scene.shading, &s, rays.direction),
-            lit,
-            all,
-            counters,
-        );
+        let split = shade::split(stage.scene.shading, &s, rays.direction);
+        let bounces = scatter::bounces(stage, splat_u(0), &s, 0);
+        let local = shade::local(stage, &s, &split, lit, (all, bounces), counters);
         local.irradiance * s.colour(Channel::Colour) + local.rest
     };
     match &stage.scene.fog {
