@@ -22,8 +22,6 @@ pub struct Quality {
     pub tolerance: f32,
     /// Side of the smallest cell that may be split no further, px; 1 refines to the pixel.
     pub smallest: u32,
-    /// Compare with a sample in the middle of each cell before interpolating.
-    pub centre: bool,
     /// What is interpolated.
     pub rung: Rung,
     /// Additional samples of pixels on an edge.
@@ -58,7 +56,6 @@ impl Quality {
                 block: 32,
                 tolerance: 0.06,
                 smallest: 2,
-                centre: true,
                 rung: Rung::Colour,
                 edge_samples: 0,
                 samples: 0,
@@ -78,7 +75,6 @@ impl Quality {
                 block: 16,
                 tolerance: 0.04,
                 smallest: 1,
-                centre: true,
                 rung: Rung::Colour,
                 edge_samples: 0,
                 samples: 0,
@@ -98,7 +94,6 @@ impl Quality {
                 block: 16,
                 tolerance: 0.03,
                 smallest: 1,
-                centre: true,
                 rung: Rung::Light,
                 edge_samples: 1,
                 samples: 0,
@@ -118,7 +113,6 @@ impl Quality {
                 block: 16,
                 tolerance: 0.02,
                 smallest: 1,
-                centre: true,
                 rung: Rung::Surface,
                 edge_samples: 3,
                 samples: 0,
@@ -138,7 +132,6 @@ impl Quality {
                 block: 8,
                 tolerance: 0.008,
                 smallest: 1,
-                centre: true,
                 rung: Rung::Surface,
                 edge_samples: 7,
                 samples: 0,
@@ -158,7 +151,6 @@ impl Quality {
                 block: 1,
                 tolerance: 0.0,
                 smallest: 1,
-                centre: true,
                 rung: Rung::Surface,
                 edge_samples: 15,
                 samples: 15,

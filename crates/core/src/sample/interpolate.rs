@@ -29,8 +29,7 @@ impl Patch {
     #[inline(never)]
     fn of(known: &Corners, value: fn(Sample) -> Vec3) -> Patch {
         let [a, b, c, d] = known.corners.map(value);
-        let mean = (a + b + c + d) * 0.25;
-        let bump = known.centre.map_or(Vec3::ZERO, |s| (value(s) - mean) * 16.0);
+        let bump = (value(known.centre) - known.mean(value)) * 16.0;
         Patch([a, b, c, d, bump])
     }
 
@@ -53,8 +52,7 @@ pub(super) fn fill(
     counters: &mut Counters,
 ) {
     let first = known.corners[0];
-    let same = |s: &Sample| (s.display() - first.display()).abs().max_element() <= SAME;
-    let equal = known.corners[1..].iter().chain(&known.centre).all(same);
+    let equal = known.agree_within(SAME);
     let kind = if equal { Kind::Filled } else { Kind::Interpolated };
     let counter = if equal { Counter::Filled } else { Counter::Interpolated };
     let count = cell.size * cell.size;

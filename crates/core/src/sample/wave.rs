@@ -8,7 +8,7 @@ use super::block::{Block, Samples};
 use super::rays::{Packet, RayList};
 use super::scatter::{self, Way};
 use crate::counters::{Counter, Counters};
-use crate::cull::{Region, occluders};
+use crate::cull::{Bounds, Region, occluders};
 use crate::features;
 use crate::math::hash::mix_x8;
 use crate::math::lanes::{F, U, V3, splat};
@@ -35,7 +35,7 @@ pub struct Scratch {
 
 /// Bounds of the hit points of each shape in a list of rays, lane by lane.
 #[derive(Default)]
-struct Boxes(Vec<(f32, V3, V3)>);
+struct Boxes(Vec<(f32, Bounds)>);
 
 impl Boxes {
     /// Adds the points of a packet's hits.
@@ -50,29 +50,23 @@ impl Boxes {
             let found = self.0.iter().position(|b| b.0 == shape);
             let at = found.unwrap_or(self.0.len());
             if found.is_none() {
-                let (lo, hi) = (splat(f32::INFINITY), splat(f32::NEG_INFINITY));
-                self.0.push((shape, V3::new(lo, lo, lo), V3::new(hi, hi, hi)));
+                self.0.push((shape, Bounds::EMPTY));
             }
-            let (_, lo, hi) = &mut self.0[at];
-            let low = |old: F, p: F| old.fast_min(own.select(p, old));
-            let high = |old: F, p: F| old.fast_max(own.select(p, old));
-            *lo = V3::new(low(lo.x, points.x), low(lo.y, points.y), low(lo.z, points.z));
-            *hi = V3::new(high(hi.x, points.x), high(hi.y, points.y), high(hi.z, points.z));
+            self.0[at].1.add(points, own);
         }
     }
 
     /// Candidate occluders of each lamp for all the points.
     fn candidates(&self, stage: &Stage) -> [u64; MAX_LAMPS] {
         let mut masks = [0; MAX_LAMPS];
-        for &(shape, lo, hi) in &self.0 {
-            let fold = |v: V3, f: fn(Vec3, Vec3) -> Vec3| (1..8).fold(v.lane(0), |m, i| f(m, v.lane(i)));
-            let (lo, hi) = (fold(lo, Vec3::min), fold(hi, Vec3::max));
+        for (shape, bounds) in &self.0 {
+            let Some((lo, hi)) = bounds.corners() else { continue };
             // Shadow rays start at the points as put back onto the surface, a clearance off.
             let reach = lo.abs().max(hi.abs()).length() + stage.scene.camera.position.length();
             let off = if stage.scene.fields.is_empty() { 0.0 } else { 4.0 * stage.quality.epsilon };
             let region = Region::cuboid(lo, hi, 4e-6 * reach + off);
             for (mask, shafts) in masks.iter_mut().zip(&stage.shafts) {
-                *mask |= occluders(stage.scene, shafts, !*mask, Some(shape as usize), &region);
+                *mask |= occluders(stage.scene, shafts, !*mask, Some(*shape as usize), &region);
             }
         }
         masks
