@@ -6,6 +6,7 @@
 mod gold;
 mod mirror;
 mod paint;
+mod still;
 
 use luc_core::quality::Quality;
 use luc_core::render::Renderer;

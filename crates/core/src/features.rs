@@ -17,11 +17,18 @@ pub const FIELD_OCCLUSION: bool = cfg!(feature = "field-occlusion");
 /// Beams of light.
 pub const BEAMS: bool = cfg!(feature = "beams");
 
+/// Bounces of diffuse light.
+pub const BOUNCES: bool = cfg!(feature = "bounces");
+/// Mirrors of rough surfaces by several rays.
+pub const ROUGH: bool = cfg!(feature = "rough");
+
 /// Each feature with the counter that shows it at work.
-pub const ALL: [(&str, Counter); 5] = [
+pub const ALL: [(&str, Counter); 7] = [
     ("ggx", Counter::Ggx),
     ("bumps", Counter::Bumps),
     ("fields", Counter::FieldSteps),
     ("field-occlusion", Counter::FieldOcclusion),
     ("beams", Counter::Beams),
+    ("bounces", Counter::ScatterRays),
+    ("rough", Counter::RoughRays),
 ];

@@ -9,7 +9,7 @@ use crate::trace::{Shape, relief_within};
 use glam::Vec3;
 
 /// Eight samples that were traced as one packet.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 pub struct Block {
     /// Linear light.
     pub colour: V3,

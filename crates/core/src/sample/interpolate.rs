@@ -6,7 +6,9 @@
 
 use super::block::Sample;
 use super::refine::{Cell, Corners};
+use super::scatter;
 use super::tile::{Kind, Record, TILE, Tile};
+use super::wave::soft;
 use crate::counters::{Counter, Counters};
 use crate::features;
 use crate::math::lanes::{F, LANE_INDEX, U, V3, splat, splat_u};
@@ -20,29 +22,22 @@ use glam::Vec3;
 /// Half an output step: colours closer than this display the same.
 const SAME: f32 = 0.5 / 255.0;
 
-/// A value over a cell, as bilinear coefficients.
-struct Patch {
-    a: V3,
-    b: V3,
-    c: V3,
-    d: V3,
-    bump: V3,
-}
+/// A value over a cell: at the corners, and the bump.
+struct Patch([Vec3; 5]);
 
 impl Patch {
     #[inline(never)]
     fn of(known: &Corners, value: fn(Sample) -> Vec3) -> Patch {
         let [a, b, c, d] = known.corners.map(value);
-        let mean = (a + b + c + d) * 0.25;
-        let bump = known.centre.map_or(Vec3::ZERO, |s| (value(s) - mean) * 16.0);
-        Patch { a: V3::splat(a), b: V3::splat(b), c: V3::splat(c), d: V3::splat(d), bump: V3::splat(bump) }
+        let bump = (value(known.centre) - known.mean(value)) * 16.0;
+        Patch([a, b, c, d, bump])
     }
 
     fn at(&self, x: F, y: F) -> V3 {
-        let upper = self.a + (self.b - self.a) * x;
-        let lower = self.c + (self.d - self.c) * x;
-        let bump = x * (F::ONE - x) * y * (F::ONE - y);
-        upper + (lower - upper) * y + self.bump * bump
+        let [a, b, c, d, bump] = self.0.map(V3::splat);
+        let upper = a + (b - a) * x;
+        let lower = c + (d - c) * x;
+        upper + (lower - upper) * y + bump * (x * (F::ONE - x) * y * (F::ONE - y))
     }
 }
 
@@ -57,8 +52,7 @@ pub(super) fn fill(
     counters: &mut Counters,
 ) {
     let first = known.corners[0];
-    let same = |s: &Sample| (s.display() - first.display()).abs().max_element() <= SAME;
-    let equal = known.corners[1..].iter().chain(&known.centre).all(same);
+    let equal = known.agree_within(SAME);
     let kind = if equal { Kind::Filled } else { Kind::Interpolated };
     let counter = if equal { Counter::Filled } else { Counter::Interpolated };
     let count = cell.size * cell.size;
@@ -79,14 +73,16 @@ pub(super) fn fill(
     }
     let scale = splat(1.0 / cell.size as f32);
     let shift = cell.size.trailing_zeros();
-    let patch = match rung {
-        Rung::Colour => Patch::of(known, |s| s.colour()),
-        Rung::Light if textured => Patch::of(known, |s| s.colour() - s.irradiance() * s.albedo()),
-        Rung::Light => Patch::of(known, |s| s.colour()),
-        Rung::Surface => Patch::of(known, |s| s.indirect()),
-    };
+    let patch = Patch::of(
+        known,
+        match rung {
+            Rung::Light if textured => |s| s.colour() - s.irradiance() * s.albedo(),
+            Rung::Colour | Rung::Light => |s| s.colour(),
+            Rung::Surface => |s| s.indirect(),
+        },
+    );
     let light = (rung == Rung::Light && textured).then(|| Patch::of(known, |s| s.irradiance()));
-    for base in (0..count).step_by(8) {
+    for base in (0..count.div_ceil(8)).map(|i| 8 * i) {
         let place = |lane: usize| {
             let i = base + lane;
             (i & (cell.size - 1), i >> shift)
@@ -170,7 +166,7 @@ fn known_surface(stage: &Stage, first: Sample, px: F, py: F, counters: &mut Coun
     let light = if first.id() <= NONE {
         counters.add(Counter::DiscTests, 8 * stage.scene.background.discs.len());
         counters.add(Counter::Glows, 8 * stage.scene.background.glows.len());
-        shade::background(&stage.scene.background, &rays, spread).0
+        shade::background(&stage.scene.background, &rays, spread, soft(stage, spread), F::ZERO).0
     } else {
         let s = surface(stage.scene, &stage.quality, &rays, t, splat(first.id()), spread);
         s.count(counters);
@@ -178,14 +174,9 @@ fn known_surface(stage: &Stage, first: Sample, px: F, py: F, counters: &mut Coun
         let view = -rays.direction;
         let all = F::ZERO.simd_gt(splat(-1.0));
         let lit = shade::direct(stage, &s, view, all, Visibility::Known, &mut codes, counters);
-        let local = shade::local(
-            stage,
-            &s,
-            &shade::split(stage.scene.shading, &s, rays.direction),
-            lit,
-            all,
-            counters,
-        );
+        let split = shade::split(stage.scene.shading, &s, rays.direction);
+        let bounces = scatter::bounces(stage, splat_u(0), &s, 0);
+        let local = shade::local(stage, &s, &split, lit, (all, bounces), counters);
         local.irradiance * s.colour(Channel::Colour) + local.rest
     };
     match &stage.scene.fog {

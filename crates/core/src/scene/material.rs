@@ -53,22 +53,7 @@ pub struct Material {
 
 impl Default for Material {
     fn default() -> Self {
-        Self {
-            colour: Vec3::ZERO,
-            diffuse: 1.0,
-            specular: Vec3::ZERO,
-            exponent: 1.0,
-            f0: Vec3::ZERO,
-            roughness: 0.0,
-            reflection: 0.0,
-            transparency: 0.0,
-            ior: 1.0,
-            tint: Vec3::ONE,
-            emission: Vec3::ZERO,
-            fire: None,
-            shadow: Vec3::ZERO,
-            texture: Texture::NONE,
-        }
+        Self::DEFAULT
     }
 }
 
@@ -95,6 +80,24 @@ pub enum Channel {
 }
 
 impl Material {
+    /// A black, matt, opaque body.
+    pub const DEFAULT: Self = Self {
+        colour: Vec3::ZERO,
+        diffuse: 1.0,
+        specular: Vec3::ZERO,
+        exponent: 1.0,
+        f0: Vec3::ZERO,
+        roughness: 0.0,
+        reflection: 0.0,
+        transparency: 0.0,
+        ior: 1.0,
+        tint: Vec3::ONE,
+        emission: Vec3::ZERO,
+        fire: None,
+        shadow: Vec3::ZERO,
+        texture: Texture::NONE,
+    };
+
     /// Number of values in [`Material::channels`].
     pub const CHANNELS: usize = 25;
 

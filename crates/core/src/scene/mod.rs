@@ -74,18 +74,23 @@ pub struct Grade {
     pub grain: f32,
 }
 
+impl Grade {
+    /// Nothing but the dither.
+    pub const DEFAULT: Self = Self {
+        exposure: 1.0,
+        bloom_threshold: 1.0,
+        bloom: 0.0,
+        lift: Vec3::ZERO,
+        gamma: Vec3::ONE,
+        gain: Vec3::ONE,
+        vignette: 0.0,
+        grain: 0.5 / 255.0,
+    };
+}
+
 impl Default for Grade {
     fn default() -> Self {
-        Self {
-            exposure: 1.0,
-            bloom_threshold: 1.0,
-            bloom: 0.0,
-            lift: Vec3::ZERO,
-            gamma: Vec3::ONE,
-            gain: Vec3::ONE,
-            vignette: 0.0,
-            grain: 0.5 / 255.0,
-        }
+        Self::DEFAULT
     }
 }
 
@@ -121,6 +126,9 @@ pub struct Scene {
     pub beams: Vec<Beam>,
     /// The reflection model for direct light.
     pub shading: Shading,
+    /// Bounces of diffuse light that rays follow where the quality has samples for them, 0 to 3; after
+    /// the last one, or without, the ambient light stands for them.
+    pub bounces: u32,
     /// Light from everywhere below (normal down) and above (normal up), mixed by the normal's y.
     pub ambient: [Vec3; 2],
     /// Haze, if the scene has any.

@@ -39,7 +39,7 @@ use crate::scene::{Cone, Cylinder, Field, Plane, Scene, Sphere, Triangle};
 /// Eight rays. Directions need not be unit vectors; distances along a ray are in lengths of its
 /// direction. Squares of origins and directions must not leave the range of f32; rays that break
 /// this may hit anything or nothing, but never at NaN.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 pub struct Rays8 {
     /// Origins, world.
     pub origin: V3,
