@@ -361,7 +361,7 @@ const REGISTER: u32 = 0x38;
 fn toward(probability: &mut u16, bit: u32, share: i32) {
     let old = i32::from(*probability);
     let target = -(bit as i32) & 0xffff;
-    *probability = (old + ((target - old) * share >> 15)) as u16;
+    *probability = (old + (((target - old) * share) >> 15)) as u16;
 }
 
 /// The history after one more bit: its count goes up, and a large count of the other goes down,
