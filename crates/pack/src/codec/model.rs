@@ -9,7 +9,7 @@
 //! them; its sum is corrected by two tables that learn how far such a prediction is to be trusted after
 //! this byte.
 //!
-//! Which facts the contexts see ([`SEEN`]) was found by a random search that flipped, copied and dropped,
+//! Which facts the contexts see (`SEEN`) was found by a random search that flipped, copied and dropped,
 //! and kept what made the intro and gzip's program smaller; four other programs that it didn't know
 //! became as much smaller as these.
 //!
