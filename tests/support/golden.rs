@@ -10,7 +10,10 @@ use std::path::PathBuf;
 pub const SIZE: (u32, u32) = (320, 180);
 
 /// Part and local frame of the kept pictures.
-pub const FRAMES: [(&str, u64); 15] = [
+pub const FRAMES: [(&str, u64); 18] = [
+    ("blobs", 0),     // the drop: the lattice closed
+    ("blobs", 400),   // satellites fly
+    ("blobs", 1199),  // last frame
     ("luc", 36),      // the beam comes out of the dark
     ("luc", 285),     // the second letter catches fire
     ("luc", 719),     // last frame: all lit
@@ -29,7 +32,10 @@ pub const FRAMES: [(&str, u64); 15] = [
 ];
 
 /// Frames whose fingerprints are kept: part, local frame, preset, size.
-pub const FINGERPRINTS: [(&str, u64, &str, (u32, u32)); 15] = [
+pub const FINGERPRINTS: [(&str, u64, &str, (u32, u32)); 18] = [
+    ("blobs", 12, "draft", (333, 187)),
+    ("blobs", 700, "medium", (320, 180)),
+    ("blobs", 950, "ultra", (320, 180)),
     ("luc", 100, "draft", (333, 187)),
     ("luc", 400, "medium", (320, 180)),
     ("luc", 600, "ultra", (320, 180)),

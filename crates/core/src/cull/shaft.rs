@@ -4,7 +4,7 @@
 //! A shape whose bound misses the bound of the points can't shadow any of them.
 
 use super::dop::{Dop, View, nearest_in_cone};
-use crate::scene::Scene;
+use crate::scene::{Field, Scene};
 use crate::shade::Lamp;
 use crate::trace::Shape;
 use glam::Vec3;
@@ -140,6 +140,9 @@ pub fn occluders(scene: &Scene, shafts: &[Shaft], among: u64, own: Option<usize>
             continue;
         }
         let shape = scene.shape(i);
+        if matches!(shape, Shape::Field(Field { shadowless: true, .. })) {
+            continue;
+        }
         let convex = matches!(shape, Shape::Sphere(_) | Shape::Plane(_) | Shape::Triangle(_));
         if !(convex && own == Some(i)) && shaft.may_hide(shape, region) {
             mask |= 1 << (i & 63);

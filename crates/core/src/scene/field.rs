@@ -11,8 +11,10 @@ use glam::{Mat3, Vec3};
 /// What a node adds. Sizes are in world units, before [`Node::rounding`] grows them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Form {
-    /// The half space y <= 0.
-    Plane,
+    /// The half space on the inner side of a plane with this unit normal.
+    Plane(Vec3),
+    /// Three endless bars along the axes, square with this half side; round ones for 0.
+    Cross(f32),
     /// A box with these half sides; a point or line for spheres and capsules.
     Box(Vec3),
     /// A rectangle, turned about the y axis at a distance: half width, half height, distance.
@@ -80,6 +82,8 @@ pub struct Field {
     pub lo: Vec3,
     /// Greatest corner.
     pub hi: Vec3,
+    /// It casts no shadow, for bodies so wide that marching to each lamp is not worth it.
+    pub shadowless: bool,
 }
 
 /// Room in a field's box beyond its bodies, world units: more than the distance at which a ray has
@@ -130,9 +134,14 @@ impl Node {
         Self::new(Form::Round([0.0, 0.0, radius]), thickness, centre)
     }
 
-    /// All below the level of `point`.
-    pub const fn plane(point: Vec3) -> Self {
-        Self::new(Form::Plane, 0.0, point)
+    /// All on the inner side of the plane through `point` with this unit normal.
+    pub const fn plane(point: Vec3, normal: Vec3) -> Self {
+        Self::new(Form::Plane(normal), 0.0, point)
+    }
+
+    /// Three endless bars along the axes, their edges rounded.
+    pub const fn cross(half: f32, rounding: f32) -> Self {
+        Self::new(Form::Cross(half - rounding), rounding, Vec3::ZERO)
     }
 
     /// Waves on what was joined so far.

@@ -45,9 +45,16 @@ fn form(node: &Node, p: V3) -> F {
         p = V3::new(x, y, z);
     }
     let half = match node.form {
-        Form::Plane => return p.y - splat(node.rounding),
+        Form::Plane(normal) => return p.dot(V3::splat(normal)) - splat(node.rounding),
         Form::Box(Vec3::ZERO) => return p.length() - splat(node.rounding),
         Form::Box(half) => half,
+        Form::Cross(half) => {
+            // The bar along the longest coordinate is the nearest: it is seen in the other two.
+            let (x, y, z) = (p.x.abs(), p.y.abs(), p.z.abs());
+            let (low, high) = (x.fast_min(y), x.fast_max(y));
+            p = V3::new(low.fast_min(z), high.fast_min(low.fast_max(z)), F::ZERO);
+            Vec3::new(half, half, 1e9)
+        }
         Form::Round([half, height, distance]) => {
             let out = (p.x * p.x + p.z * p.z).sqrt() - splat(distance);
             p = V3::new(out, p.y, F::ZERO);
@@ -122,6 +129,9 @@ pub fn field(rays: &Rays8, field: &Field, limit: F, quality: &Quality, counters:
     let speed = square.sqrt();
     let epsilon = splat(quality.epsilon);
     let (enter, exit) = rays.in_box(field.lo, field.hi, limit);
+    if !enter.simd_lt(exit).any() {
+        return Span::MISS;
+    }
     let mut near = [TRUE; Field::MOST];
     let (mut from, mut to) = (INFINITY, F::ZERO);
     let blend = field.nodes.iter().fold(0.0, |k: f32, n| k.max(n.blend));

@@ -1,10 +1,10 @@
 //! Whether light reaches a point: blocked by an opaque shape, coloured by transparent ones.
 
-use super::Rays8;
+use super::{Rays8, Shape};
 use crate::counters::Counters;
 use crate::math::lanes::{F, splat};
 use crate::quality::Quality;
-use crate::scene::Scene;
+use crate::scene::{Field, Scene};
 
 /// Visibility code of a lamp that an opaque shape hides.
 pub const BLOCKED: f32 = -1.0;
@@ -35,6 +35,9 @@ pub fn occlusion(
             continue;
         }
         let shape = scene.shape(index);
+        if matches!(shape, Shape::Field(Field { shadowless: true, .. })) {
+            continue;
+        }
         counters.add(shape.counter(), 8);
         let span = shape.span(rays, F::ONE, quality, counters);
         if bit > 0.0 {

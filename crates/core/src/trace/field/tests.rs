@@ -18,14 +18,15 @@ fn any_node(random: &mut Random, first: bool) -> Node {
     let at = random.vector(-2, 1);
     let size = random.size(-2, 0);
     let half = Vec3::from_array([0; 3].map(|_| random.range(0.1, 0.6)));
-    let node = match random.bits() % if first { 6 } else { 8 } {
+    let node = match random.bits() % if first { 6 } else { 9 } {
         0 => Node::sphere(at, size),
         1 => Node::cuboid(at, half, 0.0),
         2 => Node::cuboid(at, half, 0.09),
         3 => Node::torus(at, size, 0.1),
         4 => Node::cylinder(at, half.y, half.x),
         5 => Node::capsule(at, half.y, half.x),
-        6 => Node::plane(at),
+        6 => Node::plane(at, random.direction()),
+        7 => Node::cross(half.x, 0.05),
         _ => return Node::swell(random.range(0.0, 0.1), random.range(1.0, 9.0)),
     };
     let axes = random.one_in(2).then(|| {
