@@ -28,6 +28,8 @@ counters! {
     CylinderTests "tests of cylinders",
     ConeTests "tests of cones",
     TriangleTests "tests of triangles",
+    NodeVisits "nodes of trees",
+    FacetTests "tests of facets",
     EmitterTests "tests of emitters",
     DiscTests "tests of discs",
     Glows "glows in the sky",

@@ -5,8 +5,9 @@
 //! demands 0 of all that its plan doesn't name and more than 0 of all that it names.
 
 use crate::counters::Counter;
+use crate::mesh::Instance;
 use crate::quality::{Quality, Rung};
-use crate::scene::{LightKind, Scene, Shading};
+use crate::scene::{LightKind, Material, Scene, Shading};
 
 /// The machinery that a frame calls for, as the counters that it moves.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -15,7 +16,7 @@ pub struct Plan(Vec<Counter>);
 impl Plan {
     /// What `scene` calls for at `quality`.
     pub fn of(scene: &Scene, quality: &Quality) -> Plan {
-        let materials = || (0..scene.shape_count()).map(|i| &scene.materials[scene.shape(i).material()]);
+        let materials = || materials(scene);
         let lamps = !scene.lights.is_empty() || !scene.emitters.is_empty();
         let lit = lamps && materials().any(|m| m.diffuse > 0.0 || m.specular.max_element() > 0.0);
         let chains = quality.depth > 0;
@@ -31,6 +32,8 @@ impl Plan {
             (Counter::CylinderTests, !scene.cylinders.is_empty()),
             (Counter::ConeTests, !scene.cones.is_empty()),
             (Counter::TriangleTests, !scene.triangles.is_empty()),
+            (Counter::NodeVisits, !scene.meshes.is_empty()),
+            (Counter::FacetTests, !scene.meshes.is_empty()),
             (Counter::ReflectedRays, mirrors),
             (Counter::RefractedRays, glass),
             (Counter::EmitterTests, (mirrors || glass) && !scene.emitters.is_empty()),
@@ -63,15 +66,26 @@ impl Plan {
     }
 }
 
+/// What the shapes and meshes of a scene are made of.
+fn materials(scene: &Scene) -> impl Iterator<Item = &Material> {
+    let shapes = (0..scene.shape_count()).map(|i| scene.shape(i).material());
+    let meshes = scene.meshes.instances().iter().map(|i| i.material);
+    shapes.chain(meshes).map(|i| &scene.materials[i])
+}
+
 /// Named faults of a scene: data that its quality or the engine's limits can't show.
 pub fn warnings(scene: &Scene, quality: &Quality) -> Vec<&'static str> {
-    let materials = || (0..scene.shape_count()).map(|i| &scene.materials[scene.shape(i).material()]);
+    let materials = || materials(scene);
+    let facets: usize = scene.meshes.instances().iter().map(|i| i.mesh().triangles().len()).sum();
+    let clear = |i: &Instance| scene.materials[i.material].is_transparent();
     let spot = |kind: LightKind| matches!(kind, LightKind::Spot { inner, outer, .. } if inner <= outer);
     let faults = [
         (quality.depth < 2 && materials().any(|m| m.is_transparent()), "glass needs a depth of two or more"),
         (quality.depth < 1 && materials().any(|m| m.reflection > 0.0), "mirrors need a depth of one or more"),
         (scene.lights.len() + scene.emitters.len() > 8, "lamps after the eighth cast no shadow"),
         (materials().filter(|m| m.is_transparent()).count() > 23, "glass after the 23rd casts no shadow"),
+        (scene.meshes.instances().iter().any(clear), "meshes of glass cast no shadow"),
+        (scene.shape_count() + facets > 1 << 22, "more shapes and facets than ids"),
         (scene.lights.iter().any(|l| spot(l.kind)), "a spot's inner cone is wider than its outer one"),
         (scene.background.stops.windows(2).any(|s| s[0].y >= s[1].y), "the sky's stops do not ascend"),
     ];

@@ -102,6 +102,14 @@ impl<'a> Stage<'a> {
         (right * x + up * y + forward).normalize()
     }
 
+    /// Whether a hit id is that of a facet of a mesh that stands for something curved.
+    pub fn is_smooth(&self, id: f32) -> bool {
+        let shape = id.max(0.0) as usize >> 2;
+        shape >= self.scene.shape_count()
+            && !self.scene.meshes.is_empty()
+            && matches!(self.scene.shape(shape), Shape::Facet(instance, _) if instance.mesh().is_smooth())
+    }
+
     /// Whether direct light is computed at each pixel, so that only the rest is interpolated.
     pub fn exact_surface(&self) -> bool {
         self.quality.rung == Rung::Surface

@@ -73,6 +73,8 @@ pub(super) fn fill(
     let rung = match (smooth, textured) {
         (true, false) => Rung::Colour,
         (true, true) => stage.quality.rung.min(Rung::Light),
+        // Between the facets of a curved mesh one facet says nothing of the surface.
+        (false, _) if stage.is_smooth(first.id()) => Rung::Colour,
         (false, _) => stage.quality.rung,
     };
     let scale = splat(1.0 / cell.size as f32);

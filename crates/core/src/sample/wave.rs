@@ -36,10 +36,11 @@ pub struct Scratch {
 struct Boxes(Vec<(f32, V3, V3)>);
 
 impl Boxes {
-    /// Adds the points of a packet's hits.
-    fn add(&mut self, points: V3, ids: F) {
+    /// Adds the points of a packet's hits; shapes from number `facets` on are facets of meshes.
+    fn add(&mut self, points: V3, ids: F, facets: f32) {
         // The part of the shape makes no difference.
-        let shapes = (ids * splat(0.25)).floor();
+        // Facets share one box.
+        let shapes = (ids * splat(0.25)).floor().fast_min(splat(facets));
         let mut todo = ids.simd_ge(F::ZERO).to_bitmask();
         while todo != 0 {
             let shape = shapes.as_array()[todo.trailing_zeros() as usize];
@@ -134,7 +135,8 @@ fn step(stage: &Stage, scratch: &mut Scratch, candidates: u64, level: u32) {
     if stage.quality.cull && hits.len() >= CULL_FROM {
         boxes.0.clear();
         for (packet, hit) in rays.packets.iter().zip(hits.iter()) {
-            boxes.add(packet.rays.origin + packet.rays.direction * hit.t, hit.id);
+            let points = packet.rays.origin + packet.rays.direction * hit.t;
+            boxes.add(points, hit.id, stage.scene.shape_count() as f32);
         }
         shadows = boxes.candidates(stage);
     }
@@ -150,7 +152,9 @@ fn step(stage: &Stage, scratch: &mut Scratch, candidates: u64, level: u32) {
             for (lane, &owner) in owners.iter().enumerate() {
                 // Two hits deep for all, three for what is seen through glass.
                 let id = samples.get(owner as usize).id();
-                let deep = level == 1 || (level == 2 && id >= 0.0 && stage.bits[id as usize >> 2] > 0.0);
+                let shape = id.max(0.0) as usize >> 2;
+                let glass = id >= 0.0 && stage.bits.get(shape).is_some_and(|&bit| bit > 0.0);
+                let deep = level == 1 || (level == 2 && glass);
                 let hash = deep.then_some(hash.as_array()[lane]);
                 samples.add(owner as usize, found.light.lane(lane), hash);
             }
@@ -169,6 +173,7 @@ struct Found {
     irradiance: V3,
     albedo: V3,
     id: F,
+    key: F,
     depth: F,
     point: V3,
     normal: V3,
@@ -234,6 +239,7 @@ fn shade_packet(
         irradiance: zero,
         albedo: zero,
         id,
+        key: id,
         depth: hit.t,
         point: zero,
         normal: zero,
@@ -263,6 +269,7 @@ fn shade_packet(
     found.light += found.irradiance * found.albedo + seen * local.rest;
     found.point = s.point;
     found.normal = s.normal;
+    found.key = solid.select(s.key, id);
 
     let facing = V3::select(s.inside, -s.outward, s.outward);
     let offset = facing * s.clearance;
@@ -288,7 +295,7 @@ fn shade_packet(
 impl Found {
     /// Hash of what each lane saw.
     fn hash(&self, stage: &Stage) -> U {
-        let mut h = mix_x8(self.id.to_bits(), self.signature.to_bits());
+        let mut h = mix_x8(self.key.to_bits(), self.signature.to_bits());
         for code in &self.codes[..stage.lamps.len().min(MAX_LAMPS)] {
             h = mix_x8(h, code.to_bits());
         }

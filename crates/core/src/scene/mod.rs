@@ -2,7 +2,8 @@
 //!
 //! A scene is made anew for each frame by the show's pure functions of time. Shapes of all kinds
 //! share one index space, [`Scene::shape_count`] long: spheres first, then planes, cylinders,
-//! cones and triangles, each in list order. Right-handed, y up, world units.
+//! cones and triangles, each in list order. Facets of
+//! meshes follow. Right-handed, y up, world units.
 
 mod background;
 mod camera;
@@ -18,6 +19,7 @@ pub use material::{Channel, Material};
 pub use shapes::{Cone, Cylinder, Plane, Sphere, Triangle};
 pub use track::{Ease, Key, track};
 
+use crate::mesh::Assembly;
 use glam::Vec3;
 
 /// How light that arrives directly from a lamp is reflected.
@@ -97,6 +99,8 @@ pub struct Scene {
     pub cones: Vec<Cone>,
     /// Single triangles.
     pub triangles: Vec<Triangle>,
+    /// Triangle meshes, placed.
+    pub meshes: Assembly,
     /// What shapes are made of; shapes hold indices into this list.
     pub materials: Vec<Material>,
     /// Lamps that are not seen themselves.
@@ -116,7 +120,7 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Number of shapes of all kinds together.
+    /// Number of shapes of all kinds together; facets of meshes are numbered after them.
     pub fn shape_count(&self) -> usize {
         self.spheres.len()
             + self.planes.len()

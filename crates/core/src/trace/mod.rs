@@ -22,10 +22,11 @@ pub use plane::plane;
 pub use round::{cone, cylinder};
 pub use sphere::sphere;
 pub use surface::{Surface, surface};
-pub use triangle::triangle;
+pub use triangle::{Aim, Crossing, triangle};
 
 use crate::counters::Counter;
 use crate::math::lanes::{F, V3, splat};
+use crate::mesh::Instance;
 use crate::scene::{Cone, Cylinder, Plane, Scene, Sphere, Triangle};
 
 /// Eight rays. Directions need not be unit vectors; distances along a ray are in lengths of its
@@ -98,10 +99,11 @@ pub enum Shape<'a> {
     Cylinder(&'a Cylinder),
     Cone(&'a Cone),
     Triangle(&'a Triangle),
+    Facet(&'a Instance, usize),
 }
 
 impl Scene {
-    /// The shape at `index` in the common index space, `index < shape_count()`.
+    /// The shape at `index` in the common index space; from `shape_count()` on the meshes' facets.
     pub fn shape(&self, index: usize) -> Shape<'_> {
         let mut i = index;
         if let Some(s) = self.spheres.get(i) {
@@ -119,7 +121,12 @@ impl Scene {
         if let Some(s) = self.cones.get(i) {
             return Shape::Cone(s);
         }
-        Shape::Triangle(&self.triangles[i - self.cones.len()])
+        i -= self.cones.len();
+        if let Some(s) = self.triangles.get(i) {
+            return Shape::Triangle(s);
+        }
+        let (instance, facet) = self.meshes.facet(i - self.triangles.len());
+        Shape::Facet(instance, facet)
     }
 }
 
@@ -132,6 +139,7 @@ impl Shape<'_> {
             Shape::Cylinder(_) => Counter::CylinderTests,
             Shape::Cone(_) => Counter::ConeTests,
             Shape::Triangle(_) => Counter::TriangleTests,
+            Shape::Facet(..) => Counter::FacetTests,
         }
     }
 
@@ -143,6 +151,7 @@ impl Shape<'_> {
             Shape::Cylinder(s) => s.material,
             Shape::Cone(s) => s.material,
             Shape::Triangle(s) => s.material,
+            Shape::Facet(s, _) => s.material,
         }
     }
 
@@ -155,6 +164,7 @@ impl Shape<'_> {
             Shape::Cylinder(s) => cylinder(rays, s),
             Shape::Cone(s) => cone(rays, s),
             Shape::Triangle(s) => triangle(rays, s),
+            Shape::Facet(s, facet) => s.span(*facet, rays),
         }
     }
 }

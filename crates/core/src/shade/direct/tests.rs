@@ -22,6 +22,8 @@ fn surface(roughness: f32, exponent: f32) -> Surface {
         normal: up,
         outward: up,
         inside: FALSE,
+        key: F::ZERO,
+        uv: [F::ZERO; 2],
         clearance: F::ZERO,
         material: material.channels().map(splat),
     }
