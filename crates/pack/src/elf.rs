@@ -156,15 +156,15 @@ fn strip(file: &[u8], segments: &[Segment]) -> Result<Vec<u8>, Error> {
     Ok(stripped)
 }
 
-fn u16_at(bytes: &[u8], at: usize) -> Result<u16, Error> {
+pub fn u16_at(bytes: &[u8], at: usize) -> Result<u16, Error> {
     array_at(bytes, at).map(u16::from_le_bytes)
 }
 
-fn u32_at(bytes: &[u8], at: usize) -> Result<u32, Error> {
+pub fn u32_at(bytes: &[u8], at: usize) -> Result<u32, Error> {
     array_at(bytes, at).map(u32::from_le_bytes)
 }
 
-fn u64_at(bytes: &[u8], at: usize) -> Result<u64, Error> {
+pub fn u64_at(bytes: &[u8], at: usize) -> Result<u64, Error> {
     array_at(bytes, at).map(u64::from_le_bytes)
 }
 

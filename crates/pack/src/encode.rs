@@ -18,19 +18,24 @@ pub fn new_model() -> Box<Model> {
     }
 }
 
-/// Context mixing: what [`crate::codec::cm::decode`] decodes.
-pub fn cm(bytes: &[u8]) -> Vec<u8> {
+/// Context mixing: what [`crate::codec::cm::decode`] decodes, and what each byte cost, bits.
+#[allow(clippy::disallowed_methods, reason = "costs are for reports, whose last digit doesn't matter")]
+pub fn cm(bytes: &[u8]) -> (Vec<u8>, Vec<f32>) {
     let mut model = new_model();
     let mut encoder = Encoder::new();
+    let mut costs = vec![0.0; bytes.len()];
     model.start();
     for (position, &byte) in bytes.iter().enumerate() {
         for bit in bits(byte) {
-            encoder.bit(bit, model.predict());
+            let one = model.predict();
+            encoder.bit(bit, one);
             model.learn(bit);
+            let probability = if bit == 1 { one } else { 65536 - one };
+            costs[position] -= (probability as f32 / 65536.0).log2();
         }
         model.end_byte(&bytes[..position + 1]);
     }
-    encoder.finish()
+    (encoder.finish(), costs)
 }
 
 /// The small coder: what [`small::decode`] decodes.

@@ -76,6 +76,8 @@ pub struct Packed {
     pub stripped: Vec<u8>,
     /// Length of the compressed program, bytes; the launcher and its header are the rest.
     pub payload: usize,
+    /// What each byte of the stripped program costs, bits; only context mixing tells.
+    pub bits: Vec<f32>,
 }
 
 /// Packs a program; `file` is its ELF file.
@@ -96,10 +98,10 @@ pub fn pack_elf_as(file: &[u8], options: &Options) -> Result<Packed, Error> {
         let start = base.wrapping_add(code.range.start as u32);
         filter::filter(&mut filtered[code.range.clone()], start, filter::Direction::Pack);
     }
-    let payload = match options.method {
+    let (payload, bits) = match options.method {
         Method::Cm => encode::cm(&filtered),
-        Method::Lzma => encode::lzma(&filtered),
-        Method::Raw => filtered,
+        Method::Lzma => (encode::lzma(&filtered), Vec::new()),
+        Method::Raw => (filtered, Vec::new()),
     };
 
     let main = encode::small(launcher);
@@ -129,7 +131,7 @@ pub fn pack_elf_as(file: &[u8], options: &Options) -> Result<Packed, Error> {
     file.extend(&main);
     file.extend(&payload);
     file.extend(crc32(&file).to_le_bytes());
-    Ok(Packed { file, stripped, payload: payload.len() })
+    Ok(Packed { file, stripped, payload: payload.len(), bits })
 }
 
 /// Writes an executable file, all of it or nothing: under another name beside it, then renamed.

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 
 fn through_cm(bytes: &[u8]) -> Vec<u8> {
     let mut output = vec![0; bytes.len()];
-    cm::decode(&mut encode::new_model(), &encode::cm(bytes), &mut output);
+    cm::decode(&mut encode::new_model(), &encode::cm(bytes).0, &mut output);
     output
 }
 

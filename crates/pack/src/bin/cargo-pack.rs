@@ -1,17 +1,18 @@
 //! `cargo pack`: builds the intro for size and packs it into one file under 65,536 bytes.
 
 use lexopt::prelude::*;
-use luc_pack::report::{LIMIT, Report};
+use luc_pack::report::{LIMIT, Report, costs::Costs, symbols};
 use luc_pack::{Error, Method, Options, check, pack_elf_as, size_build, write_executable};
 use std::process::ExitCode;
 
 const HELP: &str = "\
-cargo pack [--check] [--method cm|lzma|raw]
+cargo pack [--check] [--report] [--method cm|lzma|raw]
 
 Builds the intro for size and packs it. Writes target/pack/luc, the packed file, and
 target/pack/luc-safe, the same program unpacked, and prints what became of each byte.
 
       --check        run both files too, and compare what they do
+      --report       print what each crate, module and function costs packed
       --method NAME  cm: context mixing, smallest (default); lzma: starts faster;
                      raw: no compression
   -h, --help         this text
@@ -22,6 +23,7 @@ Exit code 2: it can't be built.
 
 struct Arguments {
     check: bool,
+    report: bool,
     method: Method,
 }
 
@@ -47,11 +49,12 @@ fn fail(sentence: &str, code: u8) -> ExitCode {
 }
 
 fn arguments() -> Result<Option<Arguments>, lexopt::Error> {
-    let mut arguments = Arguments { check: false, method: Method::Cm };
+    let mut arguments = Arguments { check: false, report: false, method: Method::Cm };
     let mut parser = lexopt::Parser::from_env();
     while let Some(argument) = parser.next()? {
         match argument {
             Long("check") => arguments.check = true,
+            Long("report") => arguments.report = true,
             Long("method") => {
                 let name = parser.value()?.string()?;
                 arguments.method =
@@ -76,6 +79,10 @@ fn pack(arguments: &Arguments) -> Result<Option<String>, Error> {
     write_executable(&safe, &packed.stripped)?;
     write_executable(&file, &packed.file)?;
 
+    if arguments.report && !packed.bits.is_empty() {
+        let symbols = symbols::symbols(&linked, packed.stripped.len())?;
+        print!("{}", Costs::new(&symbols, &packed.bits));
+    }
     let report = Report::new(linked.len(), &packed);
     print!("{report}");
     if report.total > LIMIT {

@@ -1,4 +1,7 @@
-//! The table that `cargo pack` prints: where the bytes of the file go.
+//! What `cargo pack` prints: where the bytes of the file go.
+
+pub mod costs;
+pub mod symbols;
 
 use crate::Packed;
 use std::fmt;
@@ -61,7 +64,8 @@ mod tests {
 
     #[test]
     fn adds_up() {
-        let packed = Packed { file: vec![0; 23_371], stripped: vec![0; 44_952], payload: 17_370 };
+        let packed =
+            Packed { file: vec![0; 23_371], stripped: vec![0; 44_952], payload: 17_370, bits: Vec::new() };
         let text = Report::new(81_128, &packed).to_string();
         let expected = "linked           81,128\nstripped         44,952\npacked payload   17,370\n\
                         launcher          6,001\ntotal            23,371\nleft of 65,536   42,165\n";
