@@ -2,6 +2,7 @@
 
 use luc::show;
 use luc_core::counters::Counter;
+use luc_core::features;
 use luc_core::plan::{Plan, warnings};
 use luc_core::quality::Quality;
 use luc_core::render::Renderer;
@@ -72,4 +73,37 @@ fn what_a_preset_cannot_show_is_a_named_warning() {
     assert!(warnings(&mirror, &Quality::named("high").unwrap()).is_empty());
     let shallow = Quality { depth: 1, ..Quality::named("draft").unwrap() };
     assert_eq!(warnings(&mirror, &shallow), ["glass needs a depth of two or more"]);
+}
+
+/// The features that the manifest gives the size build, from its line for luc-core.
+fn named_in_the_manifest() -> Vec<String> {
+    let manifest = include_str!("../Cargo.toml");
+    let line = manifest
+        .lines()
+        .find(|line| line.starts_with("luc-core = { workspace"))
+        .expect("a line for luc-core");
+    let (_, list) = line.split_once("features = [").expect("its features");
+    let names = list.trim_end_matches("] }").split(", ").filter(|name| !name.is_empty());
+    names.map(|name| name.trim_matches('"').to_owned()).collect()
+}
+
+#[test]
+fn the_size_build_has_what_the_show_calls_for_and_nothing_else() {
+    let mut called = vec![false; features::ALL.len()];
+    for part in show::PARTS {
+        for local in (0..part.frames).step_by(60).chain([part.frames - 1]) {
+            for (_, quality) in Quality::PRESETS {
+                let plan = Plan::of(&(part.scene)(local), &quality);
+                for (called, (_, counter)) in called.iter_mut().zip(features::ALL) {
+                    *called |= plan.names(counter);
+                }
+            }
+        }
+    }
+    let called = features::ALL.iter().zip(called).filter_map(|((name, _), called)| called.then_some(*name));
+    assert_eq!(
+        named_in_the_manifest(),
+        called.collect::<Vec<_>>(),
+        "features of luc-core in the dependencies of Cargo.toml (left) and what the plans call for (right)"
+    );
 }

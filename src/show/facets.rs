@@ -7,7 +7,7 @@ use super::paint::{degrees, key, metal, polished, seconds, v};
 use glam::{Mat3, Vec3};
 use luc_core::math::hash::{hash2, unit};
 use luc_core::math::scalar::sin_cos;
-use luc_core::mesh::{Assembly, Instance, Mesh, prism};
+use luc_core::mesh::{Assembly, Instance, Mesh, lathe};
 use luc_core::scene::*;
 use std::sync::{Arc, OnceLock};
 
@@ -31,9 +31,10 @@ const TILT: [Key; 3] =
     [key(9.0, 0.19, Ease::Smooth), key(18.0, 0.24, Ease::Smooth), key(24.0, 0.8, Ease::Step)];
 const ROLL: [Key; 2] = [key(12.0, 2.5, Ease::Smooth), key(24.0, -3.0, Ease::Step)];
 
-const REFL: f32 = 1.0;
-const FILL: f32 = 0.0001;
 type Triangles = Vec<[Vec3; 3]>;
+
+/// See [`RULES`].
+type Rule = (fn(&mut Triangles, &mut Dice), usize, f32, f32);
 
 /// Numbers drawn one after the other.
 struct Dice(u32);
@@ -48,8 +49,7 @@ impl Dice {
 /// A crystal that leans: a body of six sides and a pointed tip.
 fn crystal(out: &mut Triangles, foot: Vec3, axis: Vec3, [radius, tip]: [f32; 2], turn: f32) {
     let neck = foot + axis;
-    prism(out, (foot, radius), (neck, radius * 0.8), 6, turn);
-    prism(out, (neck, radius * 0.8), (neck + axis.normalize() * tip, 0.0), 6, turn);
+    lathe(out, &[(foot, radius), (neck, radius * 0.8), (neck + axis.normalize() * tip, 0.0)], 6, turn);
 }
 
 /// A point of the arch at a share of the way up, from the pier's axis, moved outwards.
@@ -60,8 +60,9 @@ fn arch(share: f32, out: f32) -> Vec3 {
 
 /// The pier's shaft and capital.
 fn shaft(out: &mut Triangles, _: &mut Dice) {
-    prism(out, (Vec3::ZERO, 0.62), (Vec3::Y * SPRING, 0.44), 6, 0.03);
-    prism(out, (Vec3::Y * 6.1, 0.5), (Vec3::Y * 6.85, 0.72), 6, 0.01);
+    let ring = |height, radius| (Vec3::Y * height, radius);
+    lathe(out, &[ring(0.0, 0.62), ring(SPRING, 0.44)], 6, 0.03);
+    lathe(out, &[ring(6.1, 0.0), ring(6.1, 0.5), ring(6.85, 0.72), ring(6.85, 0.0)], 6, 0.01);
 }
 
 /// The crystals that lean at its foot.
@@ -97,11 +98,11 @@ fn ribs(out: &mut Triangles, dice: &mut Dice) {
                 let share = k as f32 / 7.0;
                 arch(share, 0.0) + Vec3::Z * (slant * share * BAY)
             };
-            prism(out, (at(k), radius), (at(k + 1), radius * 0.97), 6, dice.roll(-0.03, 0.03));
+            lathe(out, &[(at(k), radius), (at(k + 1), radius * 0.97)], 6, dice.roll(-0.03, 0.03));
         }
     }
     let top = arch(1.0, 0.0);
-    prism(out, (top - Vec3::Y * 1.4, 0.3), (top, 0.5), 6, 0.0);
+    lathe(out, &[(top - Vec3::Y * 1.4, 0.0), (top - Vec3::Y * 1.2, 0.3), (top, 0.5)], 6, 0.0);
 }
 
 /// A torn sheet over them.
@@ -129,16 +130,16 @@ fn rose(out: &mut Triangles, _: &mut Dice) {
         v(sin, cos, 0.0) * radius
     };
     for k in 0..24 {
-        prism(out, (around(k, 4.1), 0.3), (around(k + 1, 4.1), 0.3), 6, 0.0);
+        lathe(out, &[(around(k, 4.1), 0.3), (around(k + 1, 4.1), 0.3)], 6, 0.0);
         if k % 2 == 0 {
-            prism(out, (around(k, 1.1), 0.12), (around(k, 4.3), 0.3), 6, 0.0);
-            prism(out, (around(k, 4.3), 0.3), (around(k, 4.9), 0.0), 6, 0.0);
+            let ring = |at, radius| (around(k, at), radius);
+            lathe(out, &[ring(1.1, 0.0), ring(1.1, 0.12), ring(4.3, 0.3), ring(4.9, 0.0)], 6, 0.0);
         }
     }
 }
 
 /// The rules, with the material, the delay of growth in seconds, and the height they grow from.
-const RULES: [(fn(&mut Triangles, &mut Dice), usize, f32, f32); 6] = [
+const RULES: [Rule; 6] = [
     (splinters, 0, 0.0, 0.0),
     (foot, 0, 0.3, 0.0),
     (shaft, 0, 0.6, 0.0),
@@ -152,7 +153,7 @@ fn meshes() -> &'static [Arc<Mesh>] {
     static MESHES: OnceLock<Vec<Arc<Mesh>>> = OnceLock::new();
     MESHES.get_or_init(|| {
         let mut dice = Dice(0);
-        let mesh = |rule: &(fn(&mut Triangles, &mut Dice), usize, f32, f32)| {
+        let mesh = |rule: &Rule| {
             let mut triangles = Vec::new();
             (rule.0)(&mut triangles, &mut dice);
             Arc::new(Mesh::flat(triangles))
@@ -228,7 +229,11 @@ pub fn scene(frame: u64) -> Scene {
         ],
         lights: vec![
             Light { position: sun, colour: v(1.0, 0.72, 0.38) * (2.86 * 1.0976e6), kind: LightKind::Point },
-            Light { position: position + v(-4.0, 6.0, 5.0), colour: v(0.3, 0.5, 1.0) * FILL, kind: LightKind::Point },
+            Light {
+                position: position + v(-4.0, 6.0, 5.0),
+                colour: v(0.3, 0.5, 1.0) * 40.0,
+                kind: LightKind::Point,
+            },
         ],
         shading: Shading::CookTorrance,
         ambient: [v(0.06, 0.08, 0.12), v(0.16, 0.26, 0.5)],

@@ -4,7 +4,7 @@
 //! by itself; two glass balls circle at different heights in opposite directions, one with an
 //! ember inside. Everything stands on a dark mirror.
 
-use super::paint::{degrees, glass, key, metal, orbit, polished, seconds, swing, v};
+use super::paint::{degrees, glass, grain, key, metal, orbit, polished, seconds, swing, v};
 use glam::Vec3;
 use luc_core::scene::*;
 
@@ -91,7 +91,7 @@ pub fn scene(frame: u64) -> Scene {
             },
             Material { diffuse: 0.0, emission: v(1.0, 0.46, 0.12) * 9.0, ..Material::default() },
             glass(v(0.7, 0.94, 1.0), v(0.12, 0.62, 1.0), 1.5),
-            Material { grain: 0.18, grain_scale: 0.9, ..polished(v(0.13, 0.17, 0.24), 0.05, 1.75) },
+            Material { texture: grain(0.9, 0.18), ..polished(v(0.13, 0.17, 0.24), 0.05, 1.75) },
         ],
         lights: vec![
             Light {

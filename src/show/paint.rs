@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use luc_core::math::scalar::{sin, sin_cos};
-use luc_core::scene::{Ease, Key, Material};
+use luc_core::scene::{Ease, Key, Material, Texture};
 use std::f32::consts::{PI, TAU};
 
 use super::FPS;
@@ -46,6 +46,25 @@ pub fn metal(f0: Vec3, roughness: f32) -> Material {
 /// A polished body with a diffuse part under a clear surface.
 pub fn polished(colour: Vec3, roughness: f32, ior: f32) -> Material {
     Material { colour, f0: f0(ior), roughness, reflection: 1.0, ior, ..Material::default() }
+}
+
+/// A surface of microfacets for GGX: mirrors in its colour by the metallic part, as a body of
+/// index 1.45 by the rest. Nothing is traced for its mirror; set `reflection` to trace it.
+#[allow(dead_code, reason = "for parts that are being made")]
+pub fn surface(colour: Vec3, roughness: f32, metallic: f32) -> Material {
+    let f0 = Vec3::splat(0.034).lerp(colour, metallic);
+    Material { colour, diffuse: 1.0 - metallic, specular: Vec3::ONE, f0, roughness, ..Material::default() }
+}
+
+/// Albedo that varies by `amount`, with `scale` cells per world unit.
+pub fn grain(scale: f32, amount: f32) -> Texture {
+    Texture { scale, grain: amount, ..Texture::NONE }
+}
+
+/// Relief `depth` high, of which `strength` shows, with `scale` cells per world unit.
+#[allow(dead_code, reason = "for parts that are being made")]
+pub fn bumps(scale: f32, strength: f32, depth: f32) -> Texture {
+    Texture { scale, bump: strength * depth, ..Texture::NONE }
 }
 
 /// A clear body: `tint` at each surface, `shadow` on light through all of it.

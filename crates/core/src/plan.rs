@@ -23,7 +23,9 @@ impl Plan {
         let mirrors = chains && materials().any(|m| m.reflection > 0.0 && m.f0.max_element() > 0.0);
         let glass = chains && materials().any(|m| m.is_transparent());
         let adaptive = quality.block > 1;
-        let textured = materials().any(|m| m.grain > 0.0);
+        let grain = materials().any(|m| m.texture.grain > 0.0);
+        let bumps = materials().any(|m| m.texture.bump > 0.0);
+        let textured = grain || bumps;
         let known = quality.rung == Rung::Surface || (quality.rung == Rung::Light && textured);
         let calls = [
             (Counter::PrimaryRays, true),
@@ -34,6 +36,7 @@ impl Plan {
             (Counter::TriangleTests, !scene.triangles.is_empty()),
             (Counter::NodeVisits, !scene.meshes.is_empty()),
             (Counter::FacetTests, !scene.meshes.is_empty()),
+            (Counter::SmoothFacets, scene.meshes.instances().iter().any(|i| i.mesh().is_smooth())),
             (Counter::ReflectedRays, mirrors),
             (Counter::RefractedRays, glass),
             (Counter::EmitterTests, (mirrors || glass) && !scene.emitters.is_empty()),
@@ -43,7 +46,9 @@ impl Plan {
             (Counter::LightEvaluations, lit),
             (Counter::Phong, lit && scene.shading == Shading::Phong),
             (Counter::CookTorrance, lit && scene.shading == Shading::CookTorrance),
-            (Counter::TextureLookups, textured),
+            (Counter::Ggx, lit && scene.shading == Shading::Ggx),
+            (Counter::TextureLookups, grain),
+            (Counter::Bumps, bumps),
             (Counter::FogSegments, scene.fog.is_some()),
             (Counter::KnownSurfaces, adaptive && known),
             (Counter::Traced, !adaptive || quality.smallest <= 1),

@@ -5,7 +5,7 @@
 //! Ties go to the first axis and plane, so a tree follows from its boxes alone. The subtrees of
 //! the root are built in parallel and joined in order.
 
-use super::{Bounds, EMPTY, LEAF, LEAF_BIT, NO_ITEM, Node, Tree};
+use super::{Bounds, EMPTY, LEAF, LEAF_BIT, Node, Tree};
 use crate::math::lanes::{LANES, ZERO};
 use crate::parallel;
 
@@ -42,29 +42,27 @@ impl Tree {
             return tree;
         }
         let (parts, count) = builder.parts(&mut order, 0);
-        let mut subtrees: [(Tree, u32); LANES] = Default::default();
-        let mut rest = &mut order[..];
-        let (builder, mut tasks) = (&builder, Vec::new());
-        for (part, subtree) in parts[..count].iter().zip(&mut subtrees) {
+        let mut subtrees: [(Vec<Node>, u32); LANES] = Default::default();
+        let (mut rest, builder, mut tasks) = (&mut order[..], &builder, Vec::new());
+        for (part, (nodes, child)) in parts[..count].iter().zip(&mut subtrees) {
             let (own, others) = rest.split_at_mut(part.to - part.from);
             rest = others;
-            tasks.push(move || subtree.1 = builder.child(&mut subtree.0, own, 1));
+            tasks.push(move || *child = builder.child(nodes, own, part.from, 1));
         }
         parallel::run(tasks.into_iter());
 
         tree.nodes.push(Node::NONE);
-        for (lane, (part, (subtree, root))) in parts[..count].iter().zip(subtrees).enumerate() {
-            let (nodes, leaves) = (tree.nodes.len() as u32, tree.leaves.len() as u32);
-            let moved = |child: u32| match child {
-                EMPTY => EMPTY,
-                _ if child & LEAF_BIT == 0 => child + nodes,
-                _ => child + leaves,
-            };
-            tree.nodes[0].set(lane, part.bounds, moved(root));
-            tree.leaves.extend(subtree.leaves);
-            tree.nodes
-                .extend(subtree.nodes.into_iter().map(|node| Node { child: node.child.map(moved), ..node }));
+        for (lane, part) in parts[..count].iter().enumerate() {
+            let (nodes, child) = &mut subtrees[lane];
+            let before = tree.nodes.len() as u32;
+            let moved = |child: u32| if child & LEAF_BIT == 0 { child + before } else { child };
+            for child in nodes.iter_mut().flat_map(|node| &mut node.child) {
+                *child = moved(*child);
+            }
+            tree.nodes[0].set(lane, part.bounds, moved(*child));
+            tree.nodes.append(nodes);
         }
+        tree.order = order;
         tree
     }
 }
@@ -78,21 +76,18 @@ impl Builder<'_> {
         order.iter().fold(Bounds::NOTHING, |b, &i| b.union(self.boxes[i as usize]))
     }
 
-    /// Builds a leaf, or a node with all that is under it.
+    /// Makes a leaf, or a node with all that is under it, of the items from number `from` on.
     #[inline(never)]
-    fn child(&self, tree: &mut Tree, order: &mut [u32], depth: usize) -> u32 {
+    fn child(&self, nodes: &mut Vec<Node>, order: &mut [u32], from: usize, depth: usize) -> u32 {
         if order.len() <= self.leaf {
-            let mut leaf = [NO_ITEM; LEAF];
-            leaf[..order.len()].copy_from_slice(order);
-            tree.leaves.push(leaf);
-            return LEAF_BIT | (tree.leaves.len() - 1) as u32;
+            return LEAF_BIT | (from * LEAF + order.len() - 1) as u32;
         }
-        let index = tree.nodes.len();
-        tree.nodes.push(Node::NONE);
+        let index = nodes.len();
+        nodes.push(Node::NONE);
         let (parts, count) = self.parts(order, depth);
         for (lane, part) in parts[..count].iter().enumerate() {
-            let child = self.child(tree, &mut order[part.from..part.to], depth + 1);
-            tree.nodes[index].set(lane, part.bounds, child);
+            let child = self.child(nodes, &mut order[part.from..part.to], from + part.from, depth + 1);
+            nodes[index].set(lane, part.bounds, child);
         }
         index as u32
     }

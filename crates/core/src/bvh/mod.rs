@@ -17,14 +17,17 @@ use glam::Vec3;
 /// Items a leaf may hold.
 pub const LEAF: usize = 4;
 
-/// Item of an unused place in a leaf.
-pub const NO_ITEM: u32 = u32::MAX;
-
 /// Child of an unused lane.
 const EMPTY: u32 = u32::MAX;
 
-/// Flag of a child that is a leaf.
+/// Flag of a child that is a leaf: `LEAF_BIT | from * LEAF + count - 1`, a range of the order.
 const LEAF_BIT: u32 = 1 << 31;
+
+/// The range that a child which is a leaf stands for.
+fn range(child: u32) -> std::ops::Range<usize> {
+    let from = (child & !LEAF_BIT) as usize / LEAF;
+    from..from + child as usize % LEAF + 1
+}
 
 /// An axis-parallel box.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,7 +71,7 @@ impl Bounds {
 struct Node {
     /// Least and greatest x, y and z; a lane is a box.
     bounds: [F; 6],
-    /// Index of a node, of a leaf with [`LEAF_BIT`], or [`EMPTY`].
+    /// Index of a node, a leaf, or [`EMPTY`].
     child: [u32; LANES],
 }
 
@@ -76,15 +79,15 @@ struct Node {
 #[derive(Clone, Debug)]
 pub struct Tree {
     nodes: Vec<Node>,
-    /// The leaves' items.
-    pub leaves: Vec<[u32; LEAF]>,
+    /// The items, leaf after leaf.
+    order: Vec<u32>,
     /// The box around everything.
     pub bounds: Bounds,
 }
 
 impl Default for Tree {
     fn default() -> Self {
-        Self { nodes: Vec::new(), leaves: Vec::new(), bounds: Bounds::NOTHING }
+        Self { nodes: Vec::new(), order: Vec::new(), bounds: Bounds::NOTHING }
     }
 }
 
@@ -110,10 +113,10 @@ impl Tree {
 
     /// What is wrong with the tree over items with these boxes, if something is: every item whose
     /// box is finite must lie in exactly one leaf, every box within that of its parent, and every
-    /// node and leaf must be reached exactly once.
+    /// node must be reached exactly once.
     pub fn validate(&self, boxes: &[Bounds]) -> Result<(), &'static str> {
         let mut items = vec![0; boxes.len()];
-        let (mut nodes, mut leaves) = (vec![0; self.nodes.len()], vec![0; self.leaves.len()]);
+        let mut nodes = vec![0; self.nodes.len()];
         let mut todo = if self.is_empty() { vec![] } else { vec![(0, self.bounds)] };
         let inside = |b: Bounds, outer: Bounds| b.lo.cmpge(outer.lo).all() && b.hi.cmple(outer.hi).all();
         while let Some((index, outer)) = todo.pop() {
@@ -128,9 +131,7 @@ impl Tree {
                     todo.push((child as usize, bounds));
                     continue;
                 }
-                let leaf = (child & !LEAF_BIT) as usize;
-                *leaves.get_mut(leaf).ok_or("a child that is no leaf")? += 1;
-                for &item in self.leaves[leaf].iter().filter(|&&item| item != NO_ITEM) {
+                for &item in self.order.get(range(child)).ok_or("a leaf without items")? {
                     *items.get_mut(item as usize).ok_or("an item that is none")? += 1;
                     if !inside(boxes[item as usize], bounds) {
                         return Err("an item that leaves its leaf's box");
@@ -141,8 +142,8 @@ impl Tree {
         if !items.iter().zip(boxes).all(|(&n, b)| n == i32::from(b.is_finite())) {
             return Err("an item that is lost or there twice");
         }
-        if nodes.iter().chain(&leaves).any(|&n| n != 1) {
-            return Err("a node or leaf that is not reached exactly once");
+        if nodes.iter().any(|&n| n != 1) {
+            return Err("a node that is not reached exactly once");
         }
         Ok(())
     }

@@ -13,7 +13,7 @@
 //! **NaN**, from 0 times infinity where a ray runs in a face, is the first operand of a
 //! minimum or maximum, which then gives the second: the axis sets no bound.
 
-use super::{EMPTY, LEAF_BIT, Node, Tree};
+use super::{EMPTY, LEAF_BIT, Node, Tree, range};
 use crate::counters::{Counter, Counters};
 use crate::math::lanes::{F, V3, greatest, least, max, min, splat};
 use crate::trace::Rays8;
@@ -52,7 +52,7 @@ struct Axis {
 }
 
 impl Axis {
-    #[inline(always)]
+    #[inline(never)]
     fn new(origin: F, direction: F, room: F) -> Self {
         let signs = direction.to_bitmask() as u8;
         let inverse = F::ONE / direction;
@@ -95,7 +95,7 @@ impl Tree {
         mut limit: f32,
         stack: &mut Stack,
         counters: &mut Counters,
-        leaf: &mut dyn FnMut(u32, &mut Stack, &mut Counters) -> f32,
+        leaf: &mut dyn FnMut(&[u32], &mut Stack, &mut Counters) -> f32,
     ) {
         if self.is_empty() {
             return;
@@ -110,7 +110,7 @@ impl Tree {
             let (child, from) = next;
             if from <= limit {
                 if child & LEAF_BIT != 0 {
-                    limit = leaf(child & !LEAF_BIT, stack, counters);
+                    limit = leaf(&self.order[range(child)], stack, counters);
                 } else {
                     counters.add(Counter::NodeVisits, 1);
                     let node = &self.nodes[child as usize];

@@ -17,4 +17,4 @@ pub mod noise;
 pub mod scalar;
 
 #[cfg(test)]
-mod check;
+pub(crate) mod check;

@@ -5,21 +5,19 @@
 //! all instances, however they are stretched. A second tree lies over the instances.
 
 mod ask;
+mod lathe;
 mod place;
-mod prism;
 mod search;
 #[cfg(test)]
 mod tests;
 
+pub use lathe::lathe;
 pub use place::{Assembly, Instance};
-pub use prism::prism;
 
-use crate::bvh::{Bounds, LEAF, NO_ITEM, Tree};
+use crate::bvh::{Bounds, LEAF, Tree};
+use crate::features;
+use crate::math::lanes::{LANES, V3};
 use glam::Vec3;
-
-/// The triangles of a leaf side by side: x, y and z of the first corners, of the second, of the
-/// third, and four times their indices in the mesh. Unused places are NaN, which nothing hits.
-type Leaf = [[f32; LEAF]; 10];
 
 /// Triangles with a tree over them.
 #[derive(Clone, Debug, Default)]
@@ -29,7 +27,6 @@ pub struct Mesh {
     /// Normals at the corners, for meshes that stand for something curved; else empty.
     normals: Vec<[Vec3; 3]>,
     tree: Tree,
-    leaves: Vec<Leaf>,
 }
 
 impl Mesh {
@@ -43,17 +40,7 @@ impl Mesh {
     #[inline(never)]
     pub fn smooth(triangles: Vec<[Vec3; 3]>, normals: Vec<[Vec3; 3]>) -> Mesh {
         let boxes: Vec<Bounds> = triangles.iter().map(|t| Bounds::around(t)).collect();
-        let tree = Tree::build(&boxes, LEAF);
-        let mut leaves = vec![[[f32::NAN; LEAF]; 10]; tree.leaves.len()];
-        for (leaf, items) in leaves.iter_mut().zip(&tree.leaves) {
-            for (place, &item) in items.iter().enumerate().filter(|(_, item)| **item != NO_ITEM) {
-                let corners = triangles[item as usize].iter().flat_map(|p| p.to_array());
-                for (row, value) in leaf.iter_mut().zip(corners.chain([4.0 * item as f32])) {
-                    row[place] = value;
-                }
-            }
-        }
-        Mesh { triangles, normals, tree, leaves }
+        Mesh { tree: Tree::build(&boxes, LEAF), triangles, normals }
     }
 
     /// The triangles, in the order of their indices.
@@ -63,7 +50,7 @@ impl Mesh {
 
     /// Whether its normals are interpolated.
     pub fn is_smooth(&self) -> bool {
-        !self.normals.is_empty()
+        features::SMOOTH && !self.normals.is_empty()
     }
 
     /// What is wrong with the mesh or its tree, if something is.
@@ -73,4 +60,16 @@ impl Mesh {
         }
         self.tree.validate(&self.triangles.iter().map(|t| Bounds::around(t)).collect::<Vec<_>>())
     }
+}
+
+/// Points of eight triangles, lane by lane.
+#[inline(never)]
+fn gather(list: &[[Vec3; 3]], index: [usize; LANES]) -> [V3; 3] {
+    let mut out = [V3::ZERO; 3];
+    for (lane, &i) in index.iter().enumerate() {
+        for (points, &p) in out.iter_mut().zip(&list[i]) {
+            points.set_lane(lane, p);
+        }
+    }
+    out
 }

@@ -1,7 +1,8 @@
 //! Instances: meshes placed in a scene, and where rays meet them.
 
-use super::Mesh;
+use super::{Mesh, gather};
 use crate::bvh::{Bounds, Tree};
+use crate::features;
 use crate::math::lanes::{F, V3, splat};
 use crate::trace::{Aim, Rays8, Span};
 use glam::{Mat3, Vec3};
@@ -47,6 +48,7 @@ pub struct Facets {
 }
 
 /// A matrix times vectors, column by column.
+#[inline(never)]
 fn times(m: &Mat3, v: V3) -> V3 {
     V3::splat(m.x_axis) * v.x + V3::splat(m.y_axis) * v.y + V3::splat(m.z_axis) * v.z
 }
@@ -69,7 +71,7 @@ impl Instance {
     }
 
     /// Rays in the mesh's space; distances along them are the same.
-    #[inline(always)]
+    #[inline(never)]
     pub(super) fn local(&self, rays: &Rays8) -> Rays8 {
         let m = &self.mesh_from_world;
         Rays8 { origin: times(m, rays.origin - V3::splat(self.origin)), direction: times(m, rays.direction) }
@@ -95,7 +97,7 @@ impl Instance {
     /// Where rays cross a facet.
     pub fn span(&self, facet: usize, rays: &Rays8) -> Span {
         let corners = self.mesh.triangles[facet].map(V3::splat);
-        let crossing = Aim::new(&self.local(rays)).cross(corners);
+        let crossing = Aim::new(&self.local(rays)).cross(&corners);
         Span::single(crossing.t, crossing.hit)
     }
 
@@ -105,9 +107,8 @@ impl Instance {
     pub fn facets(&self, rays: &Rays8, index: F) -> Facets {
         let last = self.mesh.triangles.len() - 1;
         let index = index.to_array().map(|i| (i as usize).min(last));
-        let at = |list: &[[Vec3; 3]], corner: usize| V3::from_fn(|lane| list[index[lane]][corner]);
-        let corners = [0, 1, 2].map(|i| at(&self.mesh.triangles, i));
-        let crossing = Aim::new(&self.local(rays)).cross(corners);
+        let corners = gather(&self.mesh.triangles, index);
+        let crossing = Aim::new(&self.local(rays)).cross(&corners);
         let weights = crossing.weights.map(|w| w / crossing.sum);
         let mean = |[a, b, c]: [V3; 3]| a * weights[0] + b * weights[1] + c * weights[2];
         let [a, b, c] = corners;
@@ -119,7 +120,7 @@ impl Instance {
         let outward = turn((b - a).cross_exact(c - a));
         let mut normal = outward;
         if self.mesh.is_smooth() {
-            let n = turn(mean([0, 1, 2].map(|i| at(&self.mesh.normals, i))));
+            let n = turn(mean(gather(&self.mesh.normals, index)));
             normal = V3::select(n.dot(outward).simd_gt(F::ZERO), n, outward);
         }
         let w = &self.world_from_mesh;
@@ -159,7 +160,7 @@ impl Assembly {
 
     /// Whether there is nothing to hit.
     pub fn is_empty(&self) -> bool {
-        self.tree.is_empty()
+        !features::MESHES || self.tree.is_empty()
     }
 
     /// The instance that a facet belongs to, and the facet's index in its mesh.

@@ -5,12 +5,12 @@
 //! once. Both do the same arithmetic per ray and triangle, so the result is the same, and the same
 //! as that of testing everything: the nearest crossing, of equal ones that of the lower id.
 
-use super::{Assembly, Leaf};
-use crate::bvh::{LEAF, Stack};
+use super::{Assembly, gather};
+use crate::bvh::Stack;
 use crate::counters::{Counter, Counters};
-use crate::math::lanes::{F, V3, greatest, least, splat, twice};
+use crate::math::lanes::{F, LANES, V3, greatest, least, splat};
 use crate::scene::Scene;
-use crate::trace::{Aim, Hits, Rays8};
+use crate::trace::{Aim, Crossing, Hits, Rays8};
 
 /// Directions that differ by more than this part of their greatest coordinate walk alone.
 const SPREAD: f32 = 0.25;
@@ -26,35 +26,21 @@ fn size(v: V3) -> F {
 }
 
 /// Greatest difference of a coordinate between lanes.
+#[inline(never)]
 fn spread(v: V3) -> F {
     let range = |x: F| greatest(x) - least(x);
     range(v.x).fast_max(range(v.y)).fast_max(range(v.z))
 }
 
-/// Takes over the crossing of triangles `id` where it comes before the best so far. What is looked
-/// for is the nearest, or any: then a hit ends the ray, at -1.
-#[inline(always)]
-fn cross(aim: &Aim, corners: [V3; 3], id: F, any: bool, best: &mut Hits) {
-    let crossing = aim.cross(corners);
+/// Takes over the crossings that come before the best so far. What is looked for is the nearest,
+/// or any: then a hit ends the ray, at -1.
+#[inline(never)]
+fn keep(crossing: &Crossing, id: F, any: bool, best: &mut Hits) {
     let nearer = crossing.t.simd_lt(best.t) | (crossing.t.simd_eq(best.t) & id.simd_lt(best.id));
     let closer = crossing.hit & crossing.t.simd_gt(F::ZERO) & nearer;
     let t = if any { splat(-1.0) } else { crossing.t };
     best.t = closer.select(t, best.t);
     best.id = closer.select(id, best.id);
-}
-
-/// Tests the triangles of a leaf; `first` is the id of the mesh's first.
-#[inline(never)]
-fn leaf(aim: &Aim, leaf: &Leaf, first: f32, (single, any): (bool, bool), best: &mut Hits) {
-    let tests = if single { 1 } else { LEAF };
-    for k in 0..tests {
-        let row = |i: usize| if single { twice(&leaf[i]) } else { splat(leaf[i][k]) };
-        let corner = |i: usize| V3::new(row(3 * i), row(3 * i + 1), row(3 * i + 2));
-        let id = splat(first) + row(9);
-        if id.simd_eq(id).any() {
-            cross(aim, [corner(0), corner(1), corner(2)], id, any, best);
-        }
-    }
 }
 
 impl Assembly {
@@ -72,46 +58,39 @@ impl Assembly {
         best: &mut Hits,
         counters: &mut Counters,
     ) {
-        let sound = size(rays.origin).simd_lt(splat(FAR)) & size(rays.direction).simd_lt(splat(FAR));
-        let lanes = (wanted & sound).to_bitmask();
-        if lanes == 0 || self.is_empty() {
-            return;
-        }
-        // Lanes that aren't asked about run with the first that is.
-        let some = lanes.trailing_zeros() as usize;
-        let asked = wanted & sound;
-        let lane = |i: usize| Rays8 {
-            origin: V3::splat(rays.origin.lane(i)),
-            direction: V3::splat(rays.direction.lane(i)),
-        };
-        let other = lane(some);
-        let all = Rays8 {
-            origin: V3::select(asked, rays.origin, other.origin),
-            direction: V3::select(asked, rays.direction, other.direction),
-        };
-        let close = spread(all.direction).simd_lt(greatest(size(all.direction)) * splat(SPREAD))
-            & spread(all.origin).simd_lt(greatest(size(all.origin)) * splat(APART));
-        if close.all() {
-            let mut found = *best;
-            found.t = asked.select(best.t, splat(best.t.as_array()[some]));
-            self.walk(scene, &all, (false, any), &mut found, counters);
-            best.t = asked.select(found.t, best.t);
-            best.id = asked.select(found.id, best.id);
-            return;
-        }
-        for i in (0..8).filter(|i| lanes >> i & 1 == 1) {
-            let (t, id) = (best.t.as_array()[i], best.id.as_array()[i]);
+        let asked = wanted & size(rays.origin).simd_lt(splat(FAR)) & size(rays.direction).simd_lt(splat(FAR));
+        let mut todo = asked.to_bitmask();
+        while todo != 0 && !self.is_empty() {
+            // Lanes that aren't asked about run with the first that is.
+            let first = todo.trailing_zeros() as usize & 7;
+            let one = |v: V3| V3::splat(v.lane(first));
+            let bundle = Rays8 {
+                origin: V3::select(asked, rays.origin, one(rays.origin)),
+                direction: V3::select(asked, rays.direction, one(rays.direction)),
+            };
+            let close = spread(bundle.direction).simd_lt(greatest(size(bundle.direction)) * splat(SPREAD))
+                & spread(bundle.origin).simd_lt(greatest(size(bundle.origin)) * splat(APART));
+            let single = !close.all();
+            let (t, id) = (best.t.as_array()[first], best.id.as_array()[first]);
             let mut found = Hits { t: splat(t), id: splat(id) };
-            self.walk(scene, &lane(i), (true, any), &mut found, counters);
-            let (ts, ids) = (found.t.to_array(), found.id.to_array());
-            let (mut t, mut id) = (t, id);
-            for k in 0..LEAF {
-                if ts[k] < t || (ts[k] == t && ids[k] < id) {
-                    (t, id) = (ts[k], ids[k]);
+            if single {
+                let ray = Rays8 { origin: one(rays.origin), direction: one(rays.direction) };
+                self.walk(scene, &ray, (true, any), &mut found, counters);
+                todo &= todo - 1;
+            } else {
+                found.t = asked.select(best.t, found.t);
+                self.walk(scene, &bundle, (false, any), &mut found, counters);
+                todo = 0;
+            }
+            for k in 0..LANES {
+                let lane = if single { first } else { k };
+                let (t, id) = (found.t.as_array()[k], found.id.as_array()[k]);
+                let (t_best, id_best) = (&mut best.t.as_mut_array()[lane], &mut best.id.as_mut_array()[lane]);
+                let counts = single || asked.to_bitmask() >> k & 1 == 1;
+                if counts && (t < *t_best || (t == *t_best && id < *id_best)) {
+                    (*t_best, *id_best) = (t, id);
                 }
             }
-            best.t.as_mut_array()[i] = t;
-            best.id.as_mut_array()[i] = id;
         }
     }
 
@@ -119,19 +98,18 @@ impl Assembly {
         &self,
         scene: &Scene,
         rays: &Rays8,
-        mode: (bool, bool),
+        (single, any): (bool, bool),
         best: &mut Hits,
         counters: &mut Counters,
     ) {
-        let (single, any) = mode;
         let base = 4.0 * scene.shape_count() as f32;
         // Beyond which distance no hit counts any more.
         let limit = |best: &Hits| {
             let t = if single { least(best.t) } else { greatest(best.t) };
             t.as_array()[0]
         };
-        self.tree.walk(rays, limit(best), &mut Stack::new(), counters, &mut |item, stack, counters| {
-            let instance = &self.instances[self.tree.leaves[item as usize][0] as usize];
+        self.tree.walk(rays, limit(best), &mut Stack::new(), counters, &mut |items, stack, counters| {
+            let instance = &self.instances[items[0] as usize];
             if any && scene.materials[instance.material].is_transparent() {
                 return limit(best);
             }
@@ -139,9 +117,26 @@ impl Assembly {
             let local = instance.local(rays);
             let aim = Aim::new(&local);
             let [first, _] = instance.ids(base);
-            mesh.tree.walk(&local, limit(best), stack, counters, &mut |item, _, counters| {
-                counters.add(Counter::FacetTests, if single { LEAF } else { 8 * LEAF });
-                leaf(&aim, &mesh.leaves[item as usize], first, mode, best);
+            mesh.tree.walk(&local, limit(best), stack, counters, &mut |items, _, counters| {
+                let mut tests = items.len();
+                counters.add(Counter::FacetTests, tests * if single { 1 } else { LANES });
+                while tests > 0 {
+                    // One ray against all of the leaf, or all rays against one after the other.
+                    tests = if single { 0 } else { tests - 1 };
+                    let index = items[tests] as usize;
+                    let mut id = splat(4.0 * index as f32);
+                    let corners = if single {
+                        let mut index = [index; LANES];
+                        for (index, &item) in index.iter_mut().zip(items) {
+                            *index = item as usize;
+                        }
+                        id = F::new(index.map(|i| 4.0 * i as f32));
+                        gather(&mesh.triangles, index)
+                    } else {
+                        mesh.triangles[index].map(V3::splat)
+                    };
+                    keep(&aim.cross(&corners), id + splat(first), any, best);
+                }
                 limit(best)
             });
             limit(best)

@@ -33,7 +33,7 @@ fn soup(random: &mut Random, kind: u32) -> Vec<[Vec3; 3]> {
             for _ in 0..12 {
                 let (a, b) = (random.vector(-2, 3), random.vector(-2, 3));
                 let radius = (random.size(-4, 0), if random.one_in(2) { 0.0 } else { 0.3 });
-                prism(&mut list, (a, radius.0), (b, radius.1), 3 + random.bits() as usize % 5, 0.1);
+                lathe(&mut list, &[(a, radius.0), (b, radius.1)], 3 + random.bits() as usize % 5, 0.1);
             }
         }
         // The same triangles over and over: ties.
@@ -115,7 +115,7 @@ fn brute_force(scene: &Scene, rays: &Rays8) -> Hits {
     for instance in scene.meshes.instances() {
         let aim = Aim::new(&instance.local(rays));
         for triangle in instance.mesh().triangles() {
-            let crossing = aim.cross(triangle.map(V3::splat));
+            let crossing = aim.cross(&triangle.map(V3::splat));
             let closer = crossing.hit & crossing.t.simd_gt(F::ZERO) & crossing.t.simd_lt(best.t);
             best.t = closer.select(crossing.t, best.t);
             best.id = closer.select(splat(id), best.id);
@@ -245,23 +245,23 @@ fn what_lies_in_a_pyramid_is_found() {
 }
 
 #[test]
-fn a_prism_is_closed_and_faces_outwards() {
+fn a_lathed_body_is_closed_and_faces_outwards() {
     let mut random = Random::new(314);
     for _ in 0..300 {
         let (a, b) = (random.vector(-2, 3), random.vector(-2, 3));
         let sides = 3 + random.bits() as usize % 6;
-        let tip = if random.one_in(2) { 0.0 } else { random.size(-3, 1) };
+        let (foot, top) = (random.size(-3, 1), random.size(-3, 1));
+        let rings = [(a, 0.0), (a, foot), (b, top), (b + (b - a) * 0.2, 0.0)];
         let mut list = Vec::new();
-        prism(&mut list, (a, random.size(-3, 1)), (b, tip), sides, random.range(0.0, 1.0));
-        assert_eq!(list.len(), if tip == 0.0 { 2 * sides } else { 4 * sides });
+        lathe(&mut list, &rings, sides, random.range(0.0, 1.0));
+        assert_eq!(list.len(), 4 * sides);
         let middle = (a + b) * 0.5;
         let mut edges = std::collections::BTreeMap::new();
         for [p, q, r] in list {
             assert!((q - p).cross(r - p).dot(p - middle) > 0.0, "inside out: {a:?} {b:?}");
             for (from, to) in [(p, q), (q, r), (r, p)] {
-                *edges
-                    .entry([from, to].map(|p| (p + Vec3::ZERO).to_array().map(f32::to_bits)))
-                    .or_insert(0) += 1;
+                let edge = [from, to].map(|p| (p + Vec3::ZERO).to_array().map(f32::to_bits));
+                *edges.entry(edge).or_insert(0) += 1;
             }
         }
         // Each edge is there once in either direction.

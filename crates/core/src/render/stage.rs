@@ -1,6 +1,7 @@
 //! A scene made ready for one frame: what every ray asks for, computed once.
 
 use crate::cull::{Dop, Shaft, View, dops, shafts};
+use crate::features;
 use crate::math::lanes::{F, V3, splat};
 use crate::post::Display;
 use crate::quality::{Quality, Rung};
@@ -105,8 +106,8 @@ impl<'a> Stage<'a> {
     /// Whether a hit id is that of a facet of a mesh that stands for something curved.
     pub fn is_smooth(&self, id: f32) -> bool {
         let shape = id.max(0.0) as usize >> 2;
-        shape >= self.scene.shape_count()
-            && !self.scene.meshes.is_empty()
+        features::SMOOTH
+            && shape >= self.scene.shape_count()
             && matches!(self.scene.shape(shape), Shape::Facet(instance, _) if instance.mesh().is_smooth())
     }
 

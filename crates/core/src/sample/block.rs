@@ -1,7 +1,11 @@
 //! What is known of traced samples, in blocks of eight: a packet's results are stored as vectors.
 
 use crate::math::lanes::{F, U, V3, splat};
+use crate::quality::Rung;
+use crate::render::Stage;
+use crate::scene::Material;
 use crate::shade::Codes;
+use crate::trace::relief_within;
 use glam::Vec3;
 
 /// Eight samples that were traced as one packet.
@@ -102,6 +106,21 @@ impl<'a> Sample<'a> {
     }
     pub fn normal(self) -> Vec3 {
         self.block.normal.lane(self.lane)
+    }
+    /// What the first hit is made of.
+    pub fn material<'s>(self, stage: &Stage<'s>) -> Option<&'s Material> {
+        let shape = (self.id() >= 0.0).then(|| stage.scene.shape(self.id() as usize >> 2))?;
+        Some(&stage.scene.materials[shape.material()])
+    }
+    /// Whether the first surface has relief with smaller cells than `side` px, which samples that
+    /// far apart don't tell of.
+    pub fn relief_within(self, stage: &Stage, side: usize) -> bool {
+        let Some(material) = self.material(stage) else { return false };
+        let away = self.point() - stage.view.origin;
+        let distance = away.length();
+        let across = self.normal().dot(away).abs().max(1e-3 * distance);
+        let footprint = stage.pixel * distance * distance / across;
+        stage.quality.rung > Rung::Colour && relief_within(&material.texture, footprint, side as f32)
     }
     pub fn code(self, lamp: usize) -> f32 {
         self.block.codes[lamp].as_array()[self.lane]

@@ -64,13 +64,11 @@ pub(super) fn fill(
     counters.add(counter, count);
     let record = Record::new(kind, cell.size);
 
-    let textured = first.id() >= 0.0 && {
-        let shape = stage.scene.shape(first.id() as usize >> 2);
-        stage.scene.materials[shape.material()].grain > 0.0
-    };
+    let textured = first.material(stage).is_some_and(|m| m.texture.is_visible());
     // Where the colour itself runs smoothly the exact surface would show the same.
     let smooth = equal || known.colour_error() <= stage.quality.tolerance * 0.25;
     let rung = match (smooth, textured) {
+        _ if first.relief_within(stage, cell.size) => Rung::Surface,
         (true, false) => Rung::Colour,
         (true, true) => stage.quality.rung.min(Rung::Light),
         // Between the facets of a curved mesh one facet says nothing of the surface.
@@ -141,7 +139,7 @@ fn albedo(stage: &Stage, first: Sample, px: F, py: F, counters: &mut Counters) -
     counters.add(Counter::KnownSurfaces, 8);
     let (rays, t) = meet(stage, first, px, py);
     let s = surface(stage.scene, &rays, t, splat(first.id()), splat(stage.pixel));
-    counters.add(Counter::TextureLookups, s.textured());
+    s.count(counters);
     s.colour(Channel::Colour)
 }
 
@@ -158,12 +156,12 @@ fn known_surface(stage: &Stage, first: Sample, px: F, py: F, counters: &mut Coun
         shade::background(&stage.scene.background, &rays, spread).0
     } else {
         let s = surface(stage.scene, &rays, t, splat(first.id()), spread);
-        counters.add(Counter::TextureLookups, s.textured());
+        s.count(counters);
         let mut codes = first.codes();
         let view = -rays.direction;
         let all = F::ZERO.simd_gt(splat(-1.0));
         let lit = shade::direct(stage, &s, view, all, Visibility::Known, &mut codes, counters);
-        let local = shade::local(stage, &s, &shade::split(&s, rays.direction), lit);
+        let local = shade::local(stage, &s, &shade::split(stage.scene.shading, &s, rays.direction), lit);
         local.irradiance * s.colour(Channel::Colour) + local.rest
     };
     match &stage.scene.fog {

@@ -34,6 +34,8 @@ pub(super) struct Cell {
 
 /// The samples of a cell: corners in reading order, and the centre.
 pub(super) struct Corners<'a> {
+    /// Side of the cell, px.
+    pub size: usize,
     pub corners: [Sample<'a>; 4],
     pub centre: Option<Sample<'a>>,
 }
@@ -90,7 +92,11 @@ pub fn refine(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize), tile
         let mut next = Vec::new();
         for &cell in &cells {
             let at = |(x, y): (usize, usize)| scratch.samples.get(scratch.grid[y * GRID + x] as usize);
-            let known = Corners { corners: cell.points().map(at), centre: cell.middle(stage).map(at) };
+            let known = Corners {
+                size: cell.size,
+                corners: cell.points().map(at),
+                centre: cell.middle(stage).map(at),
+            };
             if cell.size == 1 {
                 tile.set(cell.x, cell.y, known.corners[0].colour(), Record::new(Kind::Traced, 1));
                 scratch.counters.add(Counter::Traced, 1);
@@ -205,6 +211,12 @@ impl Corners<'_> {
         if !self.same_surface() {
             return false;
         }
+        // Mirrors magnify relief: between samples farther apart than its cells nothing is known.
+        let first = self.corners[0];
+        let mirrors = first.material(stage).is_some_and(|m| m.reflection > 0.0);
+        if mirrors && first.relief_within(stage, self.size) {
+            return false;
+        }
         let same = self.same_signature();
         let tolerance = stage.quality.tolerance * if same { 1.0 } else { 0.25 };
         let error = match self.centre {
@@ -249,14 +261,13 @@ impl Surroundings {
             }
         }
         let meshes = &stage.scene.meshes;
-        let circle = |of: [f32; 4]| [of[0], of[1], of[3], of[2]];
         let [right, up, forward] = [0, 1, 2].map(|axis| stage.view.world_from_view.col(axis));
         let towards = |sign: (f32, f32)| {
             let p = at + reach * Vec2::from(sign);
             right * p.x + up * p.y + forward
         };
-        let corners = [(-1.0, 1.0), (1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)].map(towards);
-        if meshes.may_lie_between(stage.view.origin, corners, circle(depths), counters) {
+        let corners = [(-1.0, 1.0), (1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)].map(towards);
+        if meshes.may_lie_between(stage.view.origin, corners, depths, counters) {
             return true;
         }
         if own == usize::MAX {
@@ -275,7 +286,7 @@ impl Surroundings {
             if (self.shadows[lamp] == 0 && meshes.is_empty()) || !lit || !stage.lamps[lamp].lights(material) {
                 continue;
             }
-            let to = [0, 1, 3, 2].map(|i: usize| points[i] - position);
+            let to = points.map(|p| p - position);
             if meshes.may_lie_between(position, to, [1.0; 4], counters) {
                 return true;
             }

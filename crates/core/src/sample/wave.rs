@@ -257,11 +257,11 @@ fn shade_packet(
 
     let t = solid.select(hit.t, F::ZERO);
     let s = surface(scene, rays, t, solid.select(hit.id, splat(NONE)), spread);
-    counters.add(Counter::TextureLookups, s.textured());
+    s.count(counters);
     let view = -rays.direction;
     let trace = Visibility::Trace(shadows);
     let lit = shade::direct(stage, &s, view, solid, trace, &mut found.codes, counters);
-    let split = shade::split(&s, rays.direction);
+    let split = shade::split(scene.shading, &s, rays.direction);
     let local = shade::local(stage, &s, &split, lit);
     let seen = weight & solid;
     found.albedo = s.colour(Channel::Colour);
@@ -270,6 +270,7 @@ fn shade_packet(
     found.point = s.point;
     found.normal = s.normal;
     found.key = solid.select(s.key, id);
+    counters.add(Counter::SmoothFacets, found.key.simd_ne(id).to_bitmask().count_ones() as usize);
 
     let facing = V3::select(s.inside, -s.outward, s.outward);
     let offset = facing * s.clearance;

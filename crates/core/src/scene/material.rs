@@ -1,5 +1,6 @@
 //! What a shape is made of.
 
+use super::Texture;
 use glam::Vec3;
 
 /// Optical properties of a surface and of the body under it.
@@ -13,9 +14,10 @@ pub struct Material {
     pub specular: Vec3,
     /// Exponent of Phong's highlight, at least 1.
     pub exponent: f32,
-    /// Mirror reflectance at normal incidence, linear RGB; also the F0 of Cook-Torrance.
+    /// Mirror reflectance at normal incidence, linear RGB; also the F0 of Cook-Torrance and GGX.
     pub f0: Vec3,
-    /// Root mean square slope of the microfacets (Beckmann m), 0 to 1; widens mirrored lights.
+    /// Root mean square slope of the microfacets (Beckmann m), 0 to 1; GGX takes its square as α.
+    /// Widens mirrored lights.
     pub roughness: f32,
     /// Share of the mirrored light that is traced, 0 (no mirror) to 1.
     pub reflection: f32,
@@ -29,10 +31,8 @@ pub struct Material {
     pub emission: Vec3,
     /// Factor on a lamp's light that crosses the whole body, linear RGB.
     pub shadow: Vec3,
-    /// How much the albedo varies with a noise in world space, 0 to 1.
-    pub grain: f32,
-    /// Cells of that noise per world unit.
-    pub grain_scale: f32,
+    /// How albedo and normal vary over the surface.
+    pub texture: Texture,
 }
 
 impl Default for Material {
@@ -50,8 +50,7 @@ impl Default for Material {
             tint: Vec3::ONE,
             emission: Vec3::ZERO,
             shadow: Vec3::ZERO,
-            grain: 0.0,
-            grain_scale: 1.0,
+            texture: Texture::NONE,
         }
     }
 }
@@ -72,17 +71,19 @@ pub enum Channel {
     Ior = 14,
     Tint = 15,
     Emission = 18,
-    Grain = 21,
-    GrainScale = 22,
+    Pattern = 21,
+    Scale = 22,
+    Grain = 23,
+    Bump = 24,
 }
 
 impl Material {
     /// Number of values in [`Material::channels`].
-    pub const CHANNELS: usize = 23;
+    pub const CHANNELS: usize = 25;
 
     /// The properties that shading reads, flat, so that packets can mix materials lane by lane.
     pub fn channels(&self) -> [f32; Self::CHANNELS] {
-        let Self { colour: c, specular: s, f0: f, tint: t, emission: e, .. } = self;
+        let Self { colour: c, specular: s, f0: f, tint: t, emission: e, texture: x, .. } = self;
         [
             c.x,
             c.y,
@@ -105,8 +106,10 @@ impl Material {
             e.x,
             e.y,
             e.z,
-            self.grain,
-            self.grain_scale,
+            x.pattern as u32 as f32,
+            x.scale,
+            x.grain,
+            x.bump,
         ]
     }
 

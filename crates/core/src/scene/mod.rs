@@ -10,6 +10,7 @@ mod camera;
 mod light;
 mod material;
 mod shapes;
+mod texture;
 mod track;
 
 pub use background::{Background, Disc, Glow, Stop};
@@ -17,6 +18,7 @@ pub use camera::Camera;
 pub use light::{Emitter, Light, LightKind};
 pub use material::{Channel, Material};
 pub use shapes::{Cone, Cylinder, Plane, Sphere, Triangle};
+pub use texture::{Pattern, Texture};
 pub use track::{Ease, Key, track};
 
 use crate::mesh::Assembly;
@@ -31,6 +33,9 @@ pub enum Shading {
     /// Lambert plus Schlick Fresnel, Beckmann distribution and the V-cavity geometry term:
     /// Cook and Torrance 1982.
     CookTorrance,
+    /// Lambert plus Schlick Fresnel, Trowbridge and Reitz's distribution and Smith's
+    /// height-correlated shadowing: Walter et al. 2007, Heitz 2014.
+    Ggx,
 }
 
 /// Constant in-scatter inside a box: `c exp(-density d) + colour (1 - exp(-density d))`.

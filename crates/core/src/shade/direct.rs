@@ -4,8 +4,10 @@
 //! 1/pi, so a white surface that faces a lamp of I = 1 at d = 1 has radiance 1.
 
 use super::fresnel::{Split, schlick};
+use super::ggx::ggx;
 use super::lamps::Lamp;
 use crate::counters::{Counter, Counters};
+use crate::features;
 use crate::math::lanes::{F, V3, splat};
 use crate::math::lanes_fn::{exp, pow};
 use crate::render::Stage;
@@ -51,13 +53,19 @@ pub fn ambient(stage: &Stage, direction: V3) -> V3 {
 }
 
 /// Adds the light from all around (by the normal's height) and the surface's own to that of the
-/// lamps; what a mirror takes away is missing from the diffuse part.
+/// lamps; what a mirror takes away is missing from the diffuse part. Under GGX that is all that
+/// the microfacets reflect: the share that isn't traced is the mean light from there.
 #[inline(never)]
 pub fn local(stage: &Stage, s: &Surface, split: &Split, lit: Lit) -> Local {
     let ambient = ambient(stage, s.normal);
-    let mirrored = split.reflectance * s.value(Channel::Reflection);
+    let mut mirrored = split.reflectance * s.value(Channel::Reflection);
+    let mut rest = lit.highlight + s.colour(Channel::Emission);
+    if features::GGX && stage.scene.shading == Shading::Ggx {
+        rest += (split.reflectance - mirrored) * self::ambient(stage, split.mirrored);
+        mirrored = split.reflectance;
+    }
     let kept = (V3::splat(Vec3::ONE) - mirrored) * s.value(Channel::Diffuse);
-    Local { irradiance: (lit.irradiance + ambient) * kept, rest: lit.highlight + s.colour(Channel::Emission) }
+    Local { irradiance: (lit.irradiance + ambient) * kept, rest }
 }
 
 /// Phong's highlight (r·v)^n with r·v = 2 (n·l)(n·v) - l·v, over the cosine's weight.
@@ -87,7 +95,7 @@ fn cook_torrance(s: &Surface, l: V3, v: V3, n_l: F) -> V3 {
     let d = exp(-(n.cross(h).dot(n.cross(h)) / (c2 * m2))) / (m2 * c2 * c2);
     let two_c = n_h + n_h;
     let g = (F::ONE / n_v).fast_min(two_c / v_h).fast_min(two_c * n_l / (v_h * n_v));
-    schlick(s.colour(Channel::F0), v_h) * s.colour(Channel::Specular) * (d * g * splat(0.25))
+    schlick(s.colour(Channel::F0), splat(1.0), v_h) * s.colour(Channel::Specular) * (d * g * splat(0.25))
 }
 
 /// Direct light at surfaces seen from the unit direction `v`, in lanes `active`.
@@ -152,6 +160,11 @@ pub fn direct(
                 counters.add(Counter::CookTorrance, 8);
                 cook_torrance(s, l, v, n_l)
             }
+            Shading::Ggx if features::GGX => {
+                counters.add(Counter::Ggx, 8);
+                ggx(s, l, v) * n_l
+            }
+            Shading::Ggx => V3::ZERO,
         };
         let hidden = if lamp.is_emitter { mirrors } else { zero };
         sum.highlight += (light * highlight) & !hidden;

@@ -4,18 +4,18 @@
 //! keeps its digits near the critical angle; total internal reflection (ηs >= 1) is a case of its
 //! own with reflectance 1. Schlick 1994; inside the denser body with the outer angle.
 
+use crate::features;
 use crate::math::lanes::{F, V3, splat};
-use crate::scene::Channel;
+use crate::scene::{Channel, Shading};
 use crate::trace::Surface;
 
-/// Schlick's approximation f0 + (1 - f0)(1 - c)^5, c clamped to 0..1.
+/// Schlick's approximation f0 + (f90 - f0)(1 - c)^5, c clamped to 0..1; `f90` is 1 for a smooth surface.
 #[inline(always)]
-pub fn schlick(f0: V3, cos: F) -> V3 {
+pub fn schlick(f0: V3, f90: F, cos: F) -> V3 {
     let m = F::ONE - cos.fast_max(F::ZERO).fast_min(F::ONE);
     let m2 = m * m;
     let w = m2 * m2 * m;
-    let one = V3::splat(glam::Vec3::ONE);
-    f0 + (one - f0) * w
+    f0 + (V3::new(f90, f90, f90) - f0) * w
 }
 
 /// Where light goes from a surface.
@@ -30,9 +30,20 @@ pub struct Split {
     pub total: F,
 }
 
+/// Reflectance at grazing of the mean over the microfacets: under GGX rough surfaces, whose facets
+/// shadow each other there, keep below that of smooth ones (Lagarde 2011).
+#[inline(always)]
+fn grazing(shading: Shading, s: &Surface) -> F {
+    if !(features::GGX && shading == Shading::Ggx) {
+        return splat(1.0);
+    }
+    let f0 = s.colour(Channel::F0);
+    (F::ONE - s.value(Channel::Roughness)).fast_max(f0.x).fast_max(f0.y).fast_max(f0.z)
+}
+
 /// Splits rays with unit directions `d` at the surfaces `s`.
 #[inline(never)]
-pub fn split(s: &Surface, d: V3) -> Split {
+pub fn split(shading: Shading, s: &Surface, d: V3) -> Split {
     let n = s.normal;
     let cos = -d.dot(n);
     let eta = s.value(Channel::Ior);
@@ -49,7 +60,8 @@ pub fn split(s: &Surface, d: V3) -> Split {
     let total = total & transparent;
     let schlick_cos = (s.inside & transparent).select(cos_out, cos);
     let one = V3::splat(glam::Vec3::ONE);
-    let reflectance = V3::select(total, one, schlick(s.colour(Channel::F0), schlick_cos));
+    let reflectance =
+        V3::select(total, one, schlick(s.colour(Channel::F0), grazing(shading, s), schlick_cos));
 
     // A blended normal may mirror into the body: lift such rays just over the true surface, but
     // never over where the true surface would mirror them, which flat mirrors show at grazing.

@@ -4,6 +4,7 @@ mod background;
 mod direct;
 mod fog;
 mod fresnel;
+mod ggx;
 mod lamps;
 
 pub use background::{background, emitters};

@@ -9,6 +9,7 @@ mod plane;
 mod round;
 mod sphere;
 mod surface;
+mod texture;
 mod triangle;
 
 #[cfg(test)]
@@ -22,9 +23,11 @@ pub use plane::plane;
 pub use round::{cone, cylinder};
 pub use sphere::sphere;
 pub use surface::{Surface, surface};
+pub use texture::relief_within;
 pub use triangle::{Aim, Crossing, triangle};
 
 use crate::counters::Counter;
+use crate::features;
 use crate::math::lanes::{F, V3, splat};
 use crate::mesh::Instance;
 use crate::scene::{Cone, Cylinder, Plane, Scene, Sphere, Triangle};
@@ -122,8 +125,8 @@ impl Scene {
             return Shape::Cone(s);
         }
         i -= self.cones.len();
-        if let Some(s) = self.triangles.get(i) {
-            return Shape::Triangle(s);
+        if !features::MESHES || i < self.triangles.len() {
+            return Shape::Triangle(&self.triangles[i]);
         }
         let (instance, facet) = self.meshes.facet(i - self.triangles.len());
         Shape::Facet(instance, facet)

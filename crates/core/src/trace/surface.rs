@@ -5,9 +5,11 @@
 //! units in the last place of the largest coordinate involved, and of the point relative to where
 //! the shape is measured from (Wächter and Binder, Ray Tracing Gems ch. 6; PBRT 4th ed. §6.8.6).
 
+use super::texture::texture;
 use super::{Rays8, Shape};
+use crate::counters::{Counter, Counters};
+use crate::features;
 use crate::math::lanes::{F, V3, splat};
-use crate::math::noise::value_noise;
 use crate::scene::{Channel, Material, Scene, Sphere};
 
 /// Surfaces of a packet. Lanes without a hit hold finite nonsense.
@@ -38,9 +40,12 @@ impl Surface {
         self.material[channel as usize]
     }
 
-    /// Lanes whose albedo varies.
-    pub fn textured(&self) -> usize {
-        self.value(Channel::Grain).simd_gt(F::ZERO).to_bitmask().count_ones() as usize
+    /// Counts the patterns that were evaluated for these surfaces.
+    #[inline(always)]
+    pub fn count(&self, counters: &mut Counters) {
+        let lanes = |c| self.value(c).simd_gt(F::ZERO).to_bitmask().count_ones() as usize;
+        counters.add(Counter::TextureLookups, lanes(Channel::Grain));
+        counters.add(Counter::Bumps, lanes(Channel::Bump));
     }
 
     /// A colour of the material.
@@ -163,7 +168,7 @@ pub fn surface(scene: &Scene, rays: &Rays8, t: F, id: F, spread: F) -> Surface {
         let (index, part) = (lane_id as usize >> 2, lane_id as u32 & 3);
         let shape = scene.shape(index);
         let (point, outward, normal, scale) = match shape {
-            Shape::Facet(instance, _) => {
+            Shape::Facet(instance, _) if features::MESHES => {
                 let [first, end] = instance.ids(base);
                 mask = id.simd_ge(splat(first)) & id.simd_lt(splat(end));
                 todo &= !mask.to_bitmask();
@@ -190,21 +195,6 @@ pub fn surface(scene: &Scene, rays: &Rays8, t: F, id: F, spread: F) -> Surface {
     }
     s.inside = s.outward.dot(rays.direction).simd_gt(F::ZERO);
     s.normal = V3::select(s.inside, -s.normal, s.normal);
-    grain(&mut s, t * spread);
+    texture(&mut s, rays.direction, t * spread);
     s
-}
-
-/// Varies the albedo by a noise in world space, which fades as its cells get smaller than the
-/// footprint (`width`, world units).
-fn grain(s: &mut Surface, width: F) {
-    let amount = s.value(Channel::Grain);
-    if !amount.simd_gt(F::ZERO).any() {
-        return;
-    }
-    let scale = s.value(Channel::GrainScale);
-    let fade = (splat(2.0) - width * scale * splat(2.0)).fast_max(F::ZERO).fast_min(F::ONE);
-    let factor = F::ONE + amount * fade * value_noise(s.point * scale);
-    for channel in 0..3 {
-        s.material[channel] *= factor;
-    }
 }

@@ -37,7 +37,7 @@ pub struct Crossing {
 
 impl Aim {
     /// What the triangles that `rays` are tested against share.
-    #[inline(always)]
+    #[inline(never)]
     pub fn new(rays: &Rays8) -> Self {
         let (x, y, z) = (rays.direction.x.abs(), rays.direction.y.abs(), rays.direction.z.abs());
         let mut aim = Aim {
@@ -60,8 +60,8 @@ impl Aim {
     }
 
     /// Where the rays cross triangles with these corners.
-    #[inline(always)]
-    pub fn cross(&self, corners: [V3; 3]) -> Crossing {
+    #[inline(never)]
+    pub fn cross(&self, corners: &[V3; 3]) -> Crossing {
         let zero = F::ZERO;
         let [a, b, c] = corners.map(|p| {
             let p = self.turn(p - self.origin);
@@ -79,6 +79,6 @@ impl Aim {
 
 /// Where `rays` cross the triangle.
 pub fn triangle(rays: &Rays8, s: &Triangle) -> Span {
-    let crossing = Aim::new(rays).cross(s.corners.map(V3::splat));
+    let crossing = Aim::new(rays).cross(&s.corners.map(V3::splat));
     Span::single(crossing.t, crossing.hit)
 }

@@ -41,9 +41,10 @@ fn refraction_is_reversible_and_total_where_the_sine_says() {
         let rays = [0; 8].map(|_| falling(&mut random, n));
         let d = V3::from_fn(|i| rays[i]);
         let s = glass(V3::splat(n), V3::splat(n), inside, ior, 0.04);
-        let found = split(&s, d);
+        let found = split(Shading::Phong, &s, d);
         // Back from the other side.
-        let back = split(&glass(V3::splat(-n), V3::splat(-n), !inside, ior, 0.04), -found.refracted);
+        let back =
+            split(Shading::Phong, &glass(V3::splat(-n), V3::splat(-n), !inside, ior, 0.04), -found.refracted);
         for (i, ray) in rays.into_iter().enumerate() {
             let replay = || format!("normal {n:?} direction {ray:?} ior {ior:?} inside {inside}");
             let eta = if inside { f64::from(ior) } else { 1.0 / f64::from(ior) };
@@ -99,7 +100,7 @@ fn reflectance_is_continuous_at_the_critical_angle() {
             let sine = critical - step;
             let d = DVec3::new(sine, -(1.0 - sine * sine).sqrt(), 0.0).as_vec3();
             let s = glass(V3::splat(Vec3::Y), V3::splat(Vec3::Y), true, ior, 0.04);
-            let found = split(&s, V3::splat(d));
+            let found = split(Shading::Phong, &s, V3::splat(d));
             let light = found.reflectance.lane(0).x;
             assert_eq!(found.total.to_bits().to_array()[0], 0);
             assert!(
@@ -113,12 +114,12 @@ fn reflectance_is_continuous_at_the_critical_angle() {
 #[test]
 fn schlick_runs_from_f0_to_one_and_never_falls() {
     let f0 = V3::splat(Vec3::new(0.0, 0.04, 0.9));
-    assert_eq!(schlick(f0, splat(1.0)), f0);
-    assert_eq!(schlick(f0, splat(0.0)), V3::splat(Vec3::ONE));
-    assert_eq!(schlick(f0, splat(-0.5)), V3::splat(Vec3::ONE));
+    assert_eq!(schlick(f0, splat(1.0), splat(1.0)), f0);
+    assert_eq!(schlick(f0, splat(1.0), splat(0.0)), V3::splat(Vec3::ONE));
+    assert_eq!(schlick(f0, splat(1.0), splat(-0.5)), V3::splat(Vec3::ONE));
     let mut last = f0.lane(0);
     for i in (0..=100_000).rev() {
-        let now = schlick(f0, splat(i as f32 / 100_000.0)).lane(0);
+        let now = schlick(f0, splat(1.0), splat(i as f32 / 100_000.0)).lane(0);
         assert!(now.cmpge(last).all() && now.max_element() <= 1.0, "{i}: {last} {now}");
         last = now;
     }
@@ -132,8 +133,8 @@ fn blended_normals_never_mirror_into_the_body_and_true_ones_mirror_truly() {
         let normal = (facing + random.direction() * random.size(-8, 0)).normalize();
         let rays = [0; 8].map(|_| falling(&mut random, facing));
         let d = V3::from_fn(|i| rays[i]);
-        let found = split(&glass(V3::splat(normal), V3::splat(facing), false, 1.5, 0.04), d);
-        let flat = split(&glass(V3::splat(facing), V3::splat(facing), false, 1.5, 0.04), d);
+        let found = split(Shading::Phong, &glass(V3::splat(normal), V3::splat(facing), false, 1.5, 0.04), d);
+        let flat = split(Shading::Phong, &glass(V3::splat(facing), V3::splat(facing), false, 1.5, 0.04), d);
         for (i, ray) in rays.into_iter().enumerate() {
             let n = facing.as_dvec3().normalize();
             let up = found.mirrored.lane(i).as_dvec3().dot(n);

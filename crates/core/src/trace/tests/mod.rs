@@ -5,3 +5,4 @@ mod packets;
 mod round;
 mod secondary;
 mod sphere;
+mod texture;

@@ -5,7 +5,9 @@ use crate::counters::Counters;
 use crate::math::lanes::{F, TRUE, splat as all};
 use crate::quality::Quality;
 use crate::render::Stage;
-use crate::scene::{Cone, Cylinder, Light, LightKind, Material, Plane, Scene, Shading, Sphere, Triangle};
+use crate::scene::{
+    Cone, Cylinder, Light, LightKind, Material, Plane, Scene, Shading, Sphere, Texture, Triangle,
+};
 use crate::shade::{Visibility, direct, split as split_light};
 use crate::trace::check::{Random, packet, poisoned, splat};
 use crate::trace::{BLOCKED, NONE, Rays8, nearest, occlusion, surface};
@@ -23,7 +25,7 @@ fn mixed(random: &mut Random) -> Scene {
             transparency: if i & 1 == 0 { 0.0 } else { 0.9 },
             ior: 1.5,
             shadow: Vec3::new(0.9, 0.5, 0.1),
-            grain: 0.2,
+            texture: Texture { grain: 0.2, bump: 0.02, ..Texture::NONE },
             ..Material::default()
         })
         .collect();
@@ -70,7 +72,7 @@ fn found(stage: &Stage, rays: &Rays8) -> Vec<[u32; 8]> {
     let mut codes = [F::ZERO; 8];
     let trace = Visibility::Trace(&[u64::MAX; 8]);
     let lit = direct(stage, &s, view, solid, trace, &mut codes, counters);
-    let light = split_light(&s, rays.direction);
+    let light = split_light(scene.shading, &s, rays.direction);
     let mut values = vec![hits.t, hits.id, shadow];
     let vectors = [
         s.point,
@@ -95,7 +97,7 @@ fn a_lane_equals_the_same_ray_in_all_lanes() {
     let (mut hits, poison) = (0, poisoned());
     for case in 0..1_500 {
         let mut scene = mixed(&mut random);
-        scene.shading = if case & 1 == 0 { Shading::Phong } else { Shading::CookTorrance };
+        scene.shading = [Shading::Phong, Shading::CookTorrance, Shading::Ggx][case as usize % 3];
         let stage = Stage::new(&scene, &quality, 64, 36);
         let rays = packet(|| {
             if random.one_in(16) {

@@ -7,6 +7,7 @@
 use crate::counters::Counters;
 use crate::math::lanes::{F, V3, splat};
 use crate::mesh::{Assembly, Instance, Mesh};
+use crate::scene::Shading;
 use crate::scene::{Channel, Cone, Cylinder, Material, Plane, Scene, Sphere, Triangle};
 use crate::shade::split;
 use crate::trace::check::{Random, U, packet};
@@ -133,7 +134,7 @@ fn run(kind: usize, radius: f32, cases: usize) -> (u32, u32, u32) {
             direction: V3::select(turn, -flat, flat).normalize(),
         };
         let (t2, id2, _) = hit(&scene, &leaving);
-        let split = split(&s, rays.direction.normalize());
+        let split = split(Shading::Phong, &s, rays.direction.normalize());
         let entering = Rays8 { origin: s.point - facing * s.clearance, direction: split.refracted };
         let (_, id3, _) = hit(&scene, &entering);
         for lane in 0..8 {

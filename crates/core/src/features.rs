@@ -1,0 +1,25 @@
+//! Machinery that an executable has only if it asks for it, by cargo features of this crate.
+//!
+//! Ordinary builds have everything. The size build has what the show's manifest names, and a test
+//! holds that against what the plans of the show call for. Code asks with `if features::X`, so all
+//! of it is always compiled, and the compiler drops what can't be reached.
+
+use crate::counters::Counter;
+
+/// Trowbridge and Reitz's microfacets.
+pub const GGX: bool = cfg!(feature = "ggx");
+/// Relief from patterns.
+pub const BUMPS: bool = cfg!(feature = "bumps");
+
+/// Triangle meshes.
+pub const MESHES: bool = cfg!(feature = "meshes");
+/// Meshes with interpolated normals.
+pub const SMOOTH: bool = cfg!(feature = "smooth");
+
+/// Each feature with the counter that shows it at work.
+pub const ALL: [(&str, Counter); 4] = [
+    ("ggx", Counter::Ggx),
+    ("bumps", Counter::Bumps),
+    ("meshes", Counter::NodeVisits),
+    ("smooth", Counter::SmoothFacets),
+];
