@@ -10,10 +10,9 @@
 //!
 //! The size build (`cfg(luc_size)`, made by `cargo pack`) has neither glibc's start code nor
 //! Rust's, which cost 1 to 2 kB: the system jumps to `_start`, which hands argument count,
-//! arguments and environment to the functions of `.init_array` as glibc would (the standard
-//! library notes its arguments there, so `std::env::args_os` works), calls [`run`](super::run),
-//! and leaves by C's `exit`. Nothing flushes Rust's standard output on that way: `run` must flush
-//! what it writes.
+//! arguments and environment to the functions of `.init_array` as glibc would, calls
+//! [`player::run`](crate::player::run) with the arguments, and leaves by C's `exit`. Nothing
+//! flushes Rust's standard output on that way: the player writes without its buffer.
 
 #![cfg(all(target_arch = "x86_64", unix))]
 
@@ -66,7 +65,9 @@ mod size {
     //! Start of the size build: Linux on x86-64.
 
     use super::require_avx2;
-    use crate::run;
+    use crate::player;
+    use std::ffi::{CStr, OsStr};
+    use std::os::unix::ffi::OsStrExt;
 
     // The system leaves the argument count at the stack pointer, and the arguments above it. The
     // stack is aligned to 16 here, and a call must find it so.
@@ -80,7 +81,7 @@ mod size {
     );
 
     /// A function of `.init_array`.
-    type Initializer = unsafe extern "C" fn(usize, *const *const u8, *const *const u8);
+    type Initializer = unsafe extern "C" fn(usize, *const *const i8, *const *const i8);
 
     unsafe extern "C" {
         // Where the linker puts the first and past the last initializer.
@@ -100,7 +101,7 @@ mod size {
         // The initializers are called once, before anything else of the program runs.
         unsafe {
             let count = *stack;
-            let arguments = stack.add(1).cast::<*const u8>();
+            let arguments = stack.add(1).cast::<*const i8>();
             let environment = arguments.add(count + 1);
             let mut initializer = (&raw const __init_array_start).cast::<Initializer>();
             while initializer < (&raw const __init_array_end).cast::<Initializer>() {
@@ -108,7 +109,8 @@ mod size {
                 initializer = initializer.add(1);
             }
             signal(SIGPIPE, SIG_IGN);
-            exit(run())
+            let text = |i: usize| OsStr::from_bytes(CStr::from_ptr(*arguments.add(i)).to_bytes());
+            exit(player::run(&(1..count).map(text).collect::<Vec<_>>()))
         }
     }
 }

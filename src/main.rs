@@ -6,13 +6,7 @@ mod player;
 
 #[cfg(not(luc_size))]
 fn main() {
-    std::process::exit(run())
-}
-
-/// The program, which both entries call (see [`entry`]); returns the exit code.
-#[inline(never)]
-fn run() -> i32 {
-    let args: Vec<std::ffi::OsString> = std::env::args_os().skip(1).collect();
-    let args: Vec<&std::ffi::OsStr> = args.iter().map(|a| a.as_os_str()).collect();
-    player::run(&args)
+    let args: Vec<_> = std::env::args_os().skip(1).collect();
+    let args: Vec<_> = args.iter().map(|a| a.as_os_str()).collect();
+    std::process::exit(player::run(&args))
 }

@@ -4,7 +4,7 @@
 //! neither a full disk nor an error leaves half a picture, and an older picture stays until the new one
 //! is complete. Devices and pipes cannot be replaced and are written directly.
 
-use super::text::{Text, join, number, quoted};
+use super::text::{Text, ascii, join, number, quoted};
 use std::ffi::OsStr;
 use std::fs::{File, OpenOptions, remove_file, rename};
 use std::io::{Error, ErrorKind, Write};
@@ -66,10 +66,25 @@ impl Target {
 
 /// Writes to standard output and makes sure that it got there.
 pub fn print(bytes: &[u8]) -> Result<(), Text> {
-    let mut out = std::io::stdout().lock();
-    out.write_all(bytes)
-        .and_then(|()| out.flush())
-        .map_err(|e| join(&[b"cannot write standard output: ", &reason(&e)]))
+    standard(1, bytes).map_err(|e| join(&[b"cannot write standard output: ", &reason(&e)]))
+}
+
+/// Writes to the standard stream of this number, 1 output or 2 errors. The standard library's own
+/// way there, a buffer of lines behind a lock, would cost the packed file a kilobyte.
+#[cfg(unix)]
+pub fn standard(stream: i32, bytes: &[u8]) -> Result<(), Error> {
+    use std::os::fd::FromRawFd;
+    // SAFETY: the stream belongs to the whole program, and is never closed here.
+    let file = std::mem::ManuallyDrop::new(unsafe { File::from_raw_fd(stream) });
+    (&*file).write_all(bytes)
+}
+
+#[cfg(not(unix))]
+pub fn standard(stream: i32, bytes: &[u8]) -> Result<(), Error> {
+    match stream {
+        1 => std::io::stdout().write_all(bytes).and_then(|()| std::io::stdout().flush()),
+        _ => std::io::stderr().write_all(bytes),
+    }
 }
 
 /// The name to write under until the file is complete. It is put together without taking the path
@@ -77,7 +92,7 @@ pub fn print(bytes: &[u8]) -> Result<(), Text> {
 fn aside(path: &Path) -> PathBuf {
     let mut name = path.as_os_str().to_owned();
     let ending = join(&[b".luc-", &number(std::process::id().into())]);
-    name.push(std::str::from_utf8(&ending).unwrap_or_default());
+    name.push(ascii(&ending));
     name.into()
 }
 

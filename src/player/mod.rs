@@ -19,7 +19,6 @@ mod x11;
 
 use args::{Options, Request};
 use std::ffi::OsStr;
-use std::io::Write;
 use text::Text;
 
 /// Exit code of everything that could not be done as asked.
@@ -49,7 +48,7 @@ pub fn run(args: &[&OsStr]) -> i32 {
 fn complain(sentence: &[u8]) {
     let line = text::join(&[b"luc: ", sentence, b"\n"]);
     // There is nobody left to tell when standard error is closed.
-    let _ = std::io::stderr().write_all(&line);
+    let _ = file::standard(2, &line);
 }
 
 /// Starts the threads that render. Left to itself, rayon would start them on first use and panic when

@@ -2,21 +2,18 @@
 
 use super::args::Options;
 use super::file::Target;
-use super::text::{Text, join};
+use super::text::{Text, ascii, join};
 use luc::show;
 use luc_core::output::{decimal, png, ppm};
 use luc_core::quality::Quality;
 use luc_core::render::Renderer;
-use std::ffi::OsStr;
 
 /// Renders frame `n` as the options say and writes it.
 pub fn write(options: &Options, n: u64) -> Result<(), Text> {
     let mut name = Text::from(*b"frame-");
     decimal(&mut name, n, 6);
     name.extend_from_slice(b".png");
-    // Digits and letters are always UTF-8.
-    let name = std::str::from_utf8(&name).unwrap_or_default();
-    let output = options.output.unwrap_or(OsStr::new(name));
+    let output = options.output.unwrap_or(ascii(&name));
     let target = Target::find(output)?;
 
     let (width, height) = options.size;

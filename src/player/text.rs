@@ -1,6 +1,7 @@
 //! Text without formatting: pieces are joined, numbers are read and written by hand.
 
 use luc_core::output::decimal;
+use std::ffi::OsStr;
 
 /// What is said to the user; bytes, because arguments need not be UTF-8.
 pub type Text = Vec<u8>;
@@ -15,6 +16,13 @@ pub fn number(n: u64) -> Text {
     let mut out = Text::new();
     decimal(&mut out, n, 1);
     out
+}
+
+/// Digits, letters and dots as part of a file's name.
+pub fn ascii(text: &[u8]) -> &OsStr {
+    debug_assert!(text.is_ascii());
+    // SAFETY: ASCII is a valid encoding of itself on every system.
+    unsafe { OsStr::from_encoded_bytes_unchecked(text) }
 }
 
 /// What the user typed, in quotes, fit for one line of a terminal: no control characters, not endless.

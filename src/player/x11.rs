@@ -42,6 +42,8 @@ mod system {
     unsafe extern "C" {
         fn dlopen(name: *const c_char, flags: c_int) -> *mut c_void;
         fn dlsym(library: *mut c_void, name: *const c_char) -> *mut c_void;
+        // The standard library's own exit would bring its buffered standard output along.
+        safe fn exit(code: c_int) -> !;
     }
     const RTLD_LAZY: c_int = 1;
 
@@ -79,15 +81,15 @@ mod system {
         // SAFETY: Xlib passes a valid event.
         let code = unsafe { (*event).code };
         if code == BAD_WINDOW || code == BAD_DRAWABLE {
-            std::process::exit(0);
+            exit(0);
         }
         super::super::complain(b"the display refused the window; write a frame with --frame N");
-        std::process::exit(super::super::REFUSED);
+        exit(super::super::REFUSED);
     }
 
     /// The connection is gone: the window was killed, or its display has ended.
     extern "C" fn on_lost(_: Display) -> c_int {
-        std::process::exit(0);
+        exit(0);
     }
 
     /// The screen and a connection of our own to it. The connection stays open: a display whose last

@@ -1,15 +1,20 @@
-//! The one way in which work is spread over threads: a list of independent tasks.
+//! The one way in which work is spread over threads: the same work on each item of a list.
 //!
 //! Each task writes to places of its own, so the order in which threads take them can't show. Type
 //! erasure keeps a single copy of the thread pool's machinery in the program, where each parallel
 //! iterator would bring its own (1 to 4 kB).
 
 /// A piece of work.
-pub type Task<'a> = Box<dyn FnOnce() + Send + 'a>;
+type Task<'a> = Box<dyn FnOnce() + Send + 'a>;
 
-/// Runs all tasks on the current rayon pool and returns when all are done.
-pub fn run(tasks: impl Iterator<Item = impl FnOnce() + Send>) {
-    start(tasks.map(|task| Box::new(task) as Task).collect());
+/// Calls `work` with each item and its number on the current rayon pool; returns when all is done.
+pub fn each<T: Send>(items: impl Iterator<Item = T>, work: impl Fn(usize, T) + Sync) {
+    let work = &work;
+    let mut tasks: Vec<Task> = Vec::new();
+    for (i, item) in items.enumerate() {
+        tasks.push(Box::new(move || work(i, item)));
+    }
+    start(tasks);
 }
 
 #[inline(never)]

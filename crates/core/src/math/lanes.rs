@@ -29,6 +29,8 @@ pub const TRUE: F = F::splat(f32::from_bits(u32::MAX));
 pub const FALSE: F = ZERO;
 /// 0, 1, …, 7.
 pub const LANE_INDEX: U = U::new([0, 1, 2, 3, 4, 5, 6, 7]);
+/// The same as numbers.
+pub const RAMP: F = F::new([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
 
 /// Eight copies of `v`.
 ///

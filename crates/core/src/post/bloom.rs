@@ -7,7 +7,7 @@
 //! of seven taps (sigma 1.22 px), and the octaves are joined bilinearly with weights 0.35, 0.28,
 //! 0.22 and 0.15 (after Jimenez 2014, with fixed weights).
 
-use crate::math::lanes::{F, V3, from_bits, splat};
+use crate::math::lanes::{F, RAMP, V3, from_bits, splat};
 use crate::parallel;
 use crate::render::Stage;
 use crate::sample::{TILE, Tile};
@@ -24,100 +24,104 @@ const TAPS: [f32; 7] =
     [1.0 / 64.0, 6.0 / 64.0, 15.0 / 64.0, 20.0 / 64.0, 15.0 / 64.0, 6.0 / 64.0, 1.0 / 64.0];
 /// Rows that are gathered as one piece of work: waking a thread costs more than a few rows.
 const ROWS: usize = 16;
+/// Values that are blurred as one piece of work.
+const PIECE: usize = 1 << 15;
 /// Values before and after each row that repeat its ends.
 const PAD: usize = 8;
+/// Rows above and below the picture that repeat its first and last: the reach of the taps.
+const REACH: usize = 3;
 
-/// A small picture of linear light: red, green and blue planes.
+/// A small picture of linear light. Each row holds its red, then its green, then its blue values;
+/// around the picture its edges are repeated.
 #[derive(Default)]
 pub struct Glow {
     width: usize,
     height: usize,
-    planes: [Vec<f32>; 3],
-    /// The planes blurred along the rows, on the way to both ways.
-    along: [Vec<f32>; 3],
+    light: Vec<f32>,
+    /// The light blurred along the rows, on the way to both ways.
+    along: Vec<f32>,
     /// Side of its pixels, px of the picture: a power of two.
-    scale: usize,
+    pub scale: usize,
 }
 
 impl Glow {
     /// Makes it black, of this size.
     fn reset(&mut self, width: usize, height: usize, scale: usize) {
         (self.width, self.height, self.scale) = (width, height, scale);
-        let length = self.stride() * height;
-        for plane in self.planes.iter_mut().chain(&mut self.along) {
-            plane.clear();
-            plane.resize(length, 0.0);
+        let length = self.line() * (height + 2 * REACH);
+        for values in [&mut self.light, &mut self.along] {
+            values.clear();
+            values.resize(length, 0.0);
         }
     }
 
+    /// Distance between the colours of a row.
     fn stride(&self) -> usize {
         self.width + 2 * PAD + 8
     }
 
-    /// Repeats the ends of each row.
+    /// Distance between rows.
+    fn line(&self) -> usize {
+        3 * self.stride()
+    }
+
+    /// Where the red values of row `y` are, from column `x` on.
+    fn at(&self, x: usize, y: usize) -> usize {
+        (REACH + y) * self.line() + PAD + x
+    }
+
+    /// Repeats the edges.
+    #[inline(never)]
     fn pad(&mut self) {
-        let (width, stride) = (self.width, self.stride());
-        for row in self.planes.iter_mut().flat_map(|p| p.chunks_mut(stride)) {
+        let (width, stride, line) = (self.width, self.stride(), self.line());
+        for row in self.light.chunks_mut(stride) {
             let (first, last) = (row[PAD], row[PAD + width - 1]);
             row[..PAD].fill(first);
             row[PAD + width..].fill(last);
+        }
+        for k in 0..REACH {
+            self.light.copy_within(REACH * line..(REACH + 1) * line, k * line);
+            let last = (REACH + self.height - 1) * line;
+            self.light.copy_within(last..last + line, last + (k + 1) * line);
         }
     }
 
     /// Blurs along the rows, then along the columns.
     fn blur(&mut self) {
+        let line = self.line();
         self.pad();
-        let (width, height, stride) = (self.width, self.height, self.stride());
-        parallel::run(self.planes.iter_mut().zip(&mut self.along).map(|(plane, along)| {
-            move || {
-                for (out, row) in along.chunks_mut(stride).zip(plane.chunks(stride)) {
-                    for x in (PAD..PAD + width).step_by(8) {
-                        let sum = (0..7).fold(F::ZERO, |sum, k| sum + load(row, x + k - 3) * splat(TAPS[k]));
-                        out[x..x + 8].copy_from_slice(sum.as_array());
-                    }
-                }
-                for (y, out) in plane.chunks_mut(stride).enumerate() {
-                    for x in (PAD..PAD + width).step_by(8) {
-                        let sum = (0..7).fold(F::ZERO, |sum, k| {
-                            let y = (y + k).saturating_sub(3).min(height - 1);
-                            sum + load(along, y * stride + x) * splat(TAPS[k])
-                        });
-                        out[x..x + 8].copy_from_slice(sum.as_array());
-                    }
-                }
-            }
-        }));
+        spread(&self.light, &mut self.along, 1);
+        spread(&self.along, &mut self.light, line);
         self.pad();
     }
 
     /// The next octave: squares of four averaged.
     fn half(&self, half: &mut Glow) {
         half.reset(self.width.div_ceil(2), self.height.div_ceil(2), self.scale * 2);
-        let (stride, out_stride) = (self.stride(), half.stride());
-        for (out, plane) in half.planes.iter_mut().zip(&self.planes) {
-            for y in 0..half.height {
-                let rows = [2 * y, (2 * y + 1).min(self.height - 1)].map(|y| &plane[y * stride + PAD..]);
+        for y in 0..half.height {
+            for colour in 0..3 {
+                // One past the end is what repeats the end.
+                let upper = &self.light[self.at(0, 2 * y) + colour * self.stride()..];
+                let lower = &upper[self.line()..];
+                let out = half.at(0, y) + colour * half.stride();
                 for x in 0..half.width {
-                    // One past the end is padding that repeats the end.
-                    let sum: f32 = rows.iter().map(|r| r[2 * x] + r[2 * x + 1]).sum();
-                    out[y * out_stride + PAD + x] = sum * 0.25;
+                    let sum = (upper[2 * x] + upper[2 * x + 1]) + (lower[2 * x] + lower[2 * x + 1]);
+                    half.light[out + x] = sum * 0.25;
                 }
             }
         }
     }
 
     /// Adds the octave below, times `weight`, to this one times `own`.
-    fn join(&mut self, below: &mut Glow, own: f32, weight: f32) {
-        // Seen from the octave above it, a pixel is two wide.
-        below.scale = 2;
-        let (width, stride) = (self.width, self.stride());
-        let mut line = Line::default();
+    fn join(&mut self, below: &Glow, own: f32, weight: f32) {
+        let stride = self.stride();
         for y in 0..self.height {
-            below.row(y, &mut line);
-            for x in (0..width).step_by(8) {
-                let add = line.at(x) * splat(weight);
-                for (plane, add) in self.planes.iter_mut().zip([add.x, add.y, add.z]) {
-                    let to = &mut plane[y * stride + PAD + x..][..8];
+            for x in (0..self.width.div_ceil(8)).map(|i| 8 * i) {
+                // Seen from the octave above it, a pixel is two wide.
+                let add = below.light(x, y, 2) * splat(weight);
+                for (colour, add) in [add.x, add.y, add.z].into_iter().enumerate() {
+                    let at = self.at(x, y) + colour * stride;
+                    let to = &mut self.light[at..at + 8];
                     to.copy_from_slice((load(to, 0) * splat(own) + add).as_array());
                 }
             }
@@ -125,61 +129,53 @@ impl Glow {
         self.pad();
     }
 
-    /// The two rows around row `y` of a picture that is `scale` times as large, joined linearly,
-    /// into `line`.
-    pub fn row(&self, y: usize, line: &mut Line) {
-        let scale = self.scale;
-        let (row, fy) = place(y, scale);
-        let (row, below) = (row.min(self.height - 1), (row + 1).min(self.height - 1));
-        let stride = self.stride();
-        line.offsets = std::array::from_fn(|i| place(i + scale, scale).0);
-        line.fractions = F::new(std::array::from_fn(|i| place(i + scale, scale).1));
-        line.step = scale.trailing_zeros();
-        for (plane, out) in self.planes.iter().zip(&mut line.planes) {
-            out.resize(stride, 0.0);
-            for x in (0..stride - 7).step_by(8) {
-                let (a, b) = (load(plane, row * stride + x), load(plane, below * stride + x));
-                out[x..x + 8].copy_from_slice((a + (b - a) * splat(fy)).as_array());
+    /// Light at eight pixels, from (x, y) on, of a picture `scale` times as large, bilinearly.
+    #[inline(never)]
+    pub fn light(&self, x: usize, y: usize, scale: usize) -> V3 {
+        // The position among the glow's pixels: exact, as the scale is a power of two.
+        let place = |p: F| ((p + splat(0.5)) * splat(1.0 / scale as f32) - splat(0.5)).fast_max(F::ZERO);
+        let (u, v) = (place(splat(x as f32) + RAMP), place(splat(y as f32)));
+        let (columns, row) = (u.floor(), v.floor());
+        let (fx, fy) = (u - columns, v - row);
+        let first = columns.as_array()[0];
+        let start = self.at(first as usize, row.as_array()[0] as usize);
+        let offsets = (columns - splat(first)).trunc_int().to_array();
+        let colour = |k: usize| {
+            let upper = &self.light[start + k * self.stride()..];
+            let lower = &upper[self.line()..];
+            // Eight pixels lie on nine columns at most.
+            let mut near = [0.0; 16];
+            for i in [0, 8] {
+                let a = load(upper, i);
+                near[i..i + 8].copy_from_slice((a + (load(lower, i) - a) * fy).as_array());
             }
-        }
+            let gather = |right: i32| F::new(offsets.map(|o| near[(o + right) as usize & 15]));
+            let a = gather(0);
+            a + (gather(1) - a) * fx
+        };
+        V3::new(colour(0), colour(1), colour(2))
     }
 }
 
-/// Pixel left of (above) pixel `p` of a picture `scale` times as large, and how far `p` lies beyond.
-fn place(p: usize, scale: usize) -> (usize, f32) {
-    let v = ((p as f32 + 0.5) / scale as f32 - 0.5).max(0.0);
-    (v as usize, v - (v as usize) as f32)
+/// Filters values that lie `step` apart; `REACH` of them at either end of `out` stay as they are.
+#[inline(never)]
+fn spread(from: &[f32], out: &mut [f32], step: usize) {
+    let inside = REACH * step..from.len() - REACH * step;
+    parallel::each(out[inside].chunks_mut(PIECE), |piece, out| {
+        for (i, eight) in out.chunks_exact_mut(8).enumerate() {
+            let taps = TAPS.into_iter().enumerate();
+            let sum = taps.fold(F::ZERO, |sum, (k, tap)| {
+                sum + load(from, piece * PIECE + 8 * i + k * step) * splat(tap)
+            });
+            eight.copy_from_slice(sum.as_array());
+        }
+    });
 }
 
 /// Eight numbers from `at` on.
 #[inline(always)]
 fn load(plane: &[f32], at: usize) -> F {
     F::new(plane[at..at + 8].try_into().unwrap_or_default())
-}
-
-/// A row of a glow, ready to be read at the pixels of a larger picture.
-#[derive(Default)]
-pub struct Line {
-    planes: [Vec<f32>; 3],
-    /// Columns of eight pixels from a multiple of eight on, counted from one column before.
-    offsets: [usize; 8],
-    fractions: F,
-    step: u32,
-}
-
-impl Line {
-    /// Values at eight pixels, from `x` on, a multiple of eight.
-    pub fn at(&self, x: usize) -> V3 {
-        let base = PAD + (x >> self.step) - 1;
-        let value = |plane: &Vec<f32>| {
-            let near = &plane[base..base + 10];
-            let a = F::new(self.offsets.map(|o| near[o]));
-            let b = F::new(self.offsets.map(|o| near[o + 1]));
-            a + (b - a) * self.fractions
-        };
-        let [r, g, b] = &self.planes;
-        V3 { x: value(r), y: value(g), z: value(b) }
-    }
 }
 
 /// Gathers the light over the threshold in the first octave; false if there is no such light.
@@ -191,51 +187,41 @@ fn bright(stage: &Stage, tiles: &[Tile], glow: &mut Glow) -> bool {
     let (w, h) = (stage.width as usize, stage.height as usize);
     let across = w.div_ceil(TILE);
     glow.reset(w.div_ceil(side), h.div_ceil(side), side);
-    let stride = glow.stride();
-    let [r, g, b] = &mut glow.planes;
-    let some = stride * ROWS;
-    let strips = r.chunks_mut(some).zip(g.chunks_mut(some)).zip(b.chunks_mut(some));
+    let (stride, line) = (glow.stride(), glow.line());
     let mean = 1.0 / (side * side) as f32;
     let any = AtomicBool::new(false);
-    parallel::run(strips.enumerate().map(|(strip, ((r, g), b))| {
-        let any = &any;
-        move || {
-            let mut lit = false;
-            for y in (strip * ROWS * side..).take(ROWS * side).take_while(|y| *y < h) {
-                let line = (y / side - strip * ROWS) * stride + PAD;
-                for x in (0..w).step_by(8) {
-                    let tile = &tiles[y / TILE * across + x / TILE];
-                    let at = (y % TILE) * TILE + x % TILE;
-                    let [cr, cg, cb] = tile.rgb.each_ref().map(|p| {
-                        let v = load(p, at) * splat(grade.exposure);
-                        v.fast_max(F::ZERO).fast_min(splat(LIMIT))
-                    });
-                    let most = cr.fast_max(cg).fast_max(cb);
-                    let over = most - splat(grade.bloom_threshold);
-                    let knee = splat(KNEE);
-                    if !over.simd_gt(-knee).any() {
-                        continue;
-                    }
-                    lit = true;
-                    let soft = (over + knee).fast_max(F::ZERO).fast_min(knee + knee);
-                    let share = over.fast_max(soft * soft * splat(0.5 / (2.0 * KNEE)));
-                    // What the tile holds beyond the picture's right side doesn't count.
-                    let inside = from_bits((0xff_u32 >> (8 - (w - x).min(8))) as u8);
-                    let share = (share / most.fast_max(splat(1e-6)) * splat(mean)) & inside;
-                    for (plane, c) in [(&mut *r, cr), (&mut *g, cg), (&mut *b, cb)] {
-                        let light = (c * share).to_array();
-                        let sums = &mut plane[line + (x >> step)..];
-                        for (sum, part) in sums.iter_mut().zip(light.chunks_exact(side)) {
-                            *sum += part.iter().sum::<f32>();
-                        }
+    let rows = &mut glow.light[REACH * line..];
+    parallel::each(rows.chunks_mut(ROWS * line), |strip, rows| {
+        let first = strip * ROWS * side;
+        for y in first..h.min(first + ROWS * side) {
+            for x in (0..w.div_ceil(8)).map(|i| 8 * i) {
+                let tile = &tiles[y / TILE * across + x / TILE];
+                let at = (y % TILE) * TILE + x % TILE;
+                let colour = tile.rgb.each_ref().map(|p| {
+                    let v = load(p, at) * splat(grade.exposure);
+                    v.fast_max(F::ZERO).fast_min(splat(LIMIT))
+                });
+                let most = colour[0].fast_max(colour[1]).fast_max(colour[2]);
+                let over = most - splat(grade.bloom_threshold);
+                let knee = splat(KNEE);
+                if !over.simd_gt(-knee).any() {
+                    continue;
+                }
+                any.store(true, Ordering::Relaxed);
+                let soft = (over + knee).fast_max(F::ZERO).fast_min(knee + knee);
+                let share = over.fast_max(soft * soft * splat(0.5 / (2.0 * KNEE)));
+                // What the tile holds beyond the picture's right side doesn't count.
+                let inside = from_bits((0xff_u32 >> (8 - (w - x).min(8))) as u8);
+                let share = (share / most.fast_max(splat(1e-6)) * splat(mean)) & inside;
+                for (k, c) in colour.into_iter().enumerate() {
+                    let sums = &mut rows[((y - first) >> step) * line + k * stride + PAD + (x >> step)..];
+                    for (sum, part) in sums.iter_mut().zip((c * share).as_array().chunks_exact(side)) {
+                        *sum += part.iter().sum::<f32>();
                     }
                 }
             }
-            if lit {
-                any.store(true, Ordering::Relaxed);
-            }
         }
-    }));
+    });
     any.into_inner()
 }
 
@@ -245,6 +231,7 @@ pub struct Bloom([Glow; WEIGHTS.len()]);
 
 impl Bloom {
     /// The glow to add to the exposed picture, if there is any.
+    #[inline(never)]
     pub fn glow(&mut self, stage: &Stage, tiles: &[Tile]) -> Option<&Glow> {
         let amount = stage.scene.grade.bloom;
         if amount <= 0.0 || !bright(stage, tiles, &mut self.0[0]) {
@@ -262,7 +249,7 @@ impl Bloom {
         for level in (0..last).rev() {
             let (upper, lower) = self.0.split_at_mut(level + 1);
             let weight = if level + 1 == last { WEIGHTS[last] * amount } else { 1.0 };
-            upper[level].join(&mut lower[0], WEIGHTS[level] * amount, weight);
+            upper[level].join(&lower[0], WEIGHTS[level] * amount, weight);
         }
         self.0.first()
     }

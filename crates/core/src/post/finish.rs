@@ -4,10 +4,10 @@
 //! within 0.004. Grain: a hash of pixel and
 //! frame, which also hides banding. Pixels are quantised by floor(255 v + 1/2).
 
-use super::bloom::{Bloom, Line};
+use super::bloom::{Bloom, Glow};
 use crate::counters::{Counter, Counters};
 use crate::math::hash::{hash2, mix_x8, unit_x8};
-use crate::math::lanes::{F, LANE_INDEX, V3, splat, splat_u};
+use crate::math::lanes::{F, LANE_INDEX, RAMP, V3, splat, splat_u};
 use crate::parallel;
 use crate::render::Stage;
 use crate::sample::{Kind, TILE, Tile};
@@ -25,21 +25,14 @@ pub fn finish(stage: &Stage, tiles: &[Tile], bloom: &mut Bloom, n: u64, pixels: 
     counters.add(Counter::BloomPasses, glow.is_some() as usize);
     let painted = (stage.scene.overlay * stage.width as f32) as usize;
     counters.add(Counter::OverlayPixels, painted * stage.height as usize);
-    parallel::run(pixels.chunks_mut(width * ROWS).enumerate().map(|(strip, rows)| {
-        move || {
-            let mut line = Line::default();
-            for (row, y) in rows.chunks_mut(width).zip(strip * ROWS..) {
-                if let Some(glow) = glow {
-                    glow.row(y, &mut line);
-                }
-                let light = glow.map(|_| &line);
-                let tiles = &tiles[y / TILE * across..];
-                for (k, (tile, part)) in tiles.iter().zip(row.chunks_mut(TILE)).enumerate() {
-                    finish_row(stage, tile, light, (k * TILE, y), n, part);
-                }
+    parallel::each(pixels.chunks_mut(width * ROWS), |strip, rows| {
+        for (row, y) in rows.chunks_mut(width).zip(strip * ROWS..) {
+            let tiles = &tiles[y / TILE * across..];
+            for (k, (tile, part)) in tiles.iter().zip(row.chunks_mut(TILE)).enumerate() {
+                finish_row(stage, tile, glow, (k * TILE, y), n, part);
             }
         }
-    }));
+    });
     counters
 }
 
@@ -47,7 +40,7 @@ pub fn finish(stage: &Stage, tiles: &[Tile], bloom: &mut Bloom, n: u64, pixels: 
 fn finish_row(
     stage: &Stage,
     tile: &Tile,
-    glow: Option<&Line>,
+    glow: Option<&Glow>,
     (x, y): (usize, usize),
     n: u64,
     row: &mut [u32],
@@ -64,7 +57,7 @@ fn finish_row(
         let mut linear = V3 { x: lanes(r), y: lanes(g), z: lanes(b) };
         let x = x + base * 8;
         if let Some(glow) = glow {
-            linear += glow.at(x) * splat(1.0 / grade.exposure);
+            linear += glow.light(x, y, glow.scale) * splat(1.0 / grade.exposure);
         }
         let mut colour = stage.display.map8(linear);
 
@@ -92,9 +85,6 @@ fn finish_row(
         out.copy_from_slice(&packed.as_array()[..count]);
     }
 }
-
-/// 0, 1, …, 7.
-const RAMP: F = F::new([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
 
 /// Colours of filled and interpolated pixels: #E0342B and #2D6BFF.
 const FILLED: Vec3 = Vec3::new(0.878, 0.204, 0.169);

@@ -4,6 +4,6 @@ mod bloom;
 mod display;
 mod finish;
 
-pub use bloom::{Bloom, Glow, Line};
+pub use bloom::{Bloom, Glow};
 pub use display::Display;
 pub use finish::finish;

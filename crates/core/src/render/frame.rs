@@ -4,23 +4,29 @@ use super::Stage;
 use crate::counters::Counters;
 use crate::post::Bloom;
 use crate::quality::Quality;
-use crate::sample::{Borders, Scratch, TILE, Tile, refine, smooth_edges};
+use crate::sample::{Scratch, TILE, Tile, refine, share_edges, smooth_edges};
 use crate::scene::Scene;
 use crate::{parallel, post};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// Work on the tile whose upper left pixel is given.
+type Pass = fn(&Stage, &mut Scratch, (usize, usize), &mut Tile);
 
 /// Buffers of the threads at work, handed out and taken back.
 #[derive(Default)]
 struct Pool(Mutex<Vec<Scratch>>);
 
 impl Pool {
-    /// Lends a buffer with its counters at 0.
-    fn with(&self, work: impl FnOnce(&mut Scratch)) {
-        let lock = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let mut scratch = lock().pop().unwrap_or_default();
-        scratch.counters = Counters::default();
-        work(&mut scratch);
-        lock().push(scratch);
+    fn list(&self) -> MutexGuard<'_, Vec<Scratch>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn take(&self) -> Scratch {
+        self.list().pop().unwrap_or_default()
+    }
+
+    fn give(&self, scratch: Scratch) {
+        self.list().push(scratch);
     }
 }
 
@@ -50,34 +56,21 @@ impl Renderer {
         let across = (width as usize).div_ceil(TILE);
         let down = (height as usize).div_ceil(TILE);
         self.tiles.resize_with(across * down, Tile::default);
-        let corner = |i: usize| (i % across * TILE, i / across * TILE);
-
         let pool = &self.scratch;
-        let mut found = vec![(Borders::default(), Counters::default()); self.tiles.len()];
-        let tiles = self.tiles.iter_mut().zip(&mut found).enumerate();
-        parallel::run(tiles.map(|(i, (tile, found))| {
-            let stage = &stage;
-            move || pool.with(|scratch| *found = (refine(stage, scratch, corner(i), tile), scratch.counters))
-        }));
-
-        let border = |x: usize, y: usize| {
-            if x > 0 && y > 0 { found[(y - 1) * across + x - 1].0 } else { Borders::default() }
-        };
-        let mut more = vec![Counters::default(); self.tiles.len()];
-        let tiles = self.tiles.iter_mut().zip(&mut more).enumerate();
-        parallel::run(tiles.map(|(i, (tile, counters))| {
-            let (x, y, stage) = (i % across, i / across, &stage);
-            let near = [border(x, y + 1), border(x + 1, y), border(x, y)];
-            move || {
-                pool.with(|scratch| {
-                    smooth_edges(stage, scratch, corner(i), tile, near);
-                    *counters = scratch.counters;
-                });
-            }
-        }));
+        let passes: [Pass; 2] = [refine, smooth_edges];
         self.counters = Counters::default();
-        for counters in found.iter().map(|f| &f.1).chain(&more) {
-            self.counters.merge(counters);
+        for pass in passes {
+            parallel::each(self.tiles.iter_mut(), |i, tile| {
+                let mut scratch = pool.take();
+                scratch.counters = Counters::default();
+                pass(&stage, &mut scratch, (i % across * TILE, i / across * TILE), tile);
+                tile.counters = scratch.counters;
+                pool.give(scratch);
+            });
+            share_edges(&mut self.tiles, across);
+            for tile in &self.tiles {
+                self.counters.merge(&tile.counters);
+            }
         }
         self.counters.merge(&post::finish(&stage, &self.tiles, &mut self.bloom, n, pixels));
     }

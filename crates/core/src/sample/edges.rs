@@ -4,7 +4,7 @@
 //! whose first point is the centre itself. Colours are averaged as c / (1 + max(c)), so that a
 //! bright light behind an edge doesn't swallow the edge (Karis 2014); the same for all presets.
 
-use super::tile::{Borders, Kind, Record, TILE, Tile};
+use super::tile::{Kind, Record, TILE, Tile};
 use super::wave::{Position, Scratch, trace};
 use crate::counters::Counter;
 use crate::render::Stage;
@@ -33,15 +33,8 @@ fn expand(c: Vec3) -> Vec3 {
     c / (1.0 - c.max_element()).max(1e-4)
 }
 
-/// Takes more samples of the tile's edge pixels: its own and those its neighbours to the left,
-/// above, and left above have found.
-pub fn smooth_edges(
-    stage: &Stage,
-    scratch: &mut Scratch,
-    corner: (usize, usize),
-    tile: &mut Tile,
-    [left, above, diagonal]: [Borders; 3],
-) {
+/// Takes more samples of the tile's edge pixels.
+pub fn smooth_edges(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize), tile: &mut Tile) {
     let all = stage.quality.samples;
     let edge = stage.quality.edge_samples.max(all);
     if edge == 0 {
@@ -51,12 +44,8 @@ pub fn smooth_edges(
     let height = TILE.min(stage.height as usize - corner.1);
     let mut pixels: Vec<(usize, usize, u32)> = Vec::new();
     for y in 0..height {
-        let mut word = tile.edges[y] | (left.right >> y & 1);
-        if y == 0 {
-            word |= above.bottom | diagonal.corner as u64;
-        }
         pixels.extend((0..width).filter_map(|x| {
-            let count = if word >> x & 1 == 1 { edge } else { all };
+            let count = if tile.edges[y][x] { edge } else { all };
             (count > 0).then_some((x, y, count))
         }));
     }

@@ -14,5 +14,5 @@ mod wave;
 
 pub use edges::smooth_edges;
 pub use refine::refine;
-pub use tile::{Borders, Kind, Record, TILE, Tile};
+pub use tile::{Kind, Record, TILE, Tile, share_edges};
 pub use wave::Scratch;

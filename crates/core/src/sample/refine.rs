@@ -12,7 +12,7 @@
 
 use super::block::{Sample, Samples};
 use super::interpolate::fill;
-use super::tile::{Borders, Kind, Record, TILE, Tile};
+use super::tile::{GRID, Kind, Record, TILE, Tile};
 use super::wave::{Position, Scratch, trace};
 use crate::counters::{Counter, Counters};
 use crate::cull::{Region, may_cover, occluders};
@@ -20,9 +20,6 @@ use crate::render::Stage;
 use crate::shade::MAX_LAMPS;
 use crate::trace::{BLOCKED, Shape};
 use glam::Vec2;
-
-/// Side of the grid of a tile's samples: one more than its pixels.
-const GRID: usize = TILE + 1;
 
 /// A square between samples; `x`, `y` from the tile's corner, px.
 #[derive(Clone, Copy)]
@@ -68,7 +65,7 @@ struct Surroundings {
 }
 
 /// Samples the tile whose upper left pixel is `corner`, and fills its pixels.
-pub fn refine(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize), tile: &mut Tile) -> Borders {
+pub fn refine(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize), tile: &mut Tile) {
     let width = TILE.min(stage.width as usize - corner.0);
     let height = TILE.min(stage.height as usize - corner.1);
     let cell = stage.quality.cell(stage.height) as usize;
@@ -81,7 +78,7 @@ pub fn refine(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize), tile
     for y in (0..height).step_by(cell) {
         cells.extend((0..width).step_by(cell).map(|x| Cell { x, y, size: cell }));
     }
-    let mut edges = [[false; GRID]; GRID];
+    tile.edges = [[false; GRID]; GRID];
     let mut first = true;
     while !cells.is_empty() {
         sample(stage, scratch, &cells, corner, around.shapes);
@@ -102,7 +99,7 @@ pub fn refine(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize), tile
                 scratch.counters.add(Counter::Traced, 1);
                 if known.is_edge(stage) {
                     for (x, y) in cell.points() {
-                        edges[y][x] = true;
+                        tile.edges[y][x] = true;
                     }
                 }
             } else if cell.size <= stage.quality.smallest as usize
@@ -116,7 +113,6 @@ pub fn refine(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize), tile
         }
         cells = next;
     }
-    collect(&edges, tile)
 }
 
 /// Traces the samples of `cells` that are still missing, in the cells' order.
@@ -149,19 +145,6 @@ fn shadow_casters(stage: &Stage, samples: &Samples) -> [u64; MAX_LAMPS] {
         *mask = occluders(stage.scene, shafts, u64::MAX, None, &region);
     }
     masks
-}
-
-/// Marks the edge pixels in the tile and returns those of its neighbours.
-fn collect(edges: &[[bool; GRID]; GRID], tile: &mut Tile) -> Borders {
-    let mut borders = Borders { corner: edges[TILE][TILE], ..Borders::default() };
-    let word =
-        |bits: &mut dyn Iterator<Item = bool>| bits.zip(0..TILE).fold(0, |w, (b, i)| w | (b as u64) << i);
-    for (row, edges) in tile.edges.iter_mut().zip(edges) {
-        *row = word(&mut edges.iter().copied());
-    }
-    borders.right = word(&mut edges.iter().map(|row| row[TILE]));
-    borders.bottom = word(&mut edges[TILE].iter().copied());
-    borders
 }
 
 impl Corners<'_> {

@@ -1,5 +1,6 @@
 //! A square of pixels that is sampled as one unit, and how each of its pixels was got.
 
+use crate::counters::Counters;
 use glam::Vec3;
 
 /// Side of a tile, px.
@@ -40,33 +41,46 @@ impl Record {
     }
 }
 
-/// Edge pixels of the neighbours to the right and below that this tile has found.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Borders {
-    /// Bit y: the pixel at (64, y).
-    pub right: u64,
-    /// Bit x: the pixel at (x, 64).
-    pub bottom: u64,
-    /// The pixel at (64, 64).
-    pub corner: bool,
-}
+/// Side of the grid of a tile's samples: one more than its pixels.
+pub const GRID: usize = TILE + 1;
 
 /// The finished linear light of a tile's pixels, row after row of [`TILE`].
 pub struct Tile {
     /// Red, green and blue planes.
-    pub rgb: [Vec<f32>; 3],
+    pub rgb: [[f32; TILE * TILE]; 3],
     /// How each pixel was got.
-    pub record: Vec<Record>,
-    /// Bit x of word y: the pixel lies on an edge.
-    pub edges: [u64; TILE],
+    pub record: [Record; TILE * TILE],
+    /// Which pixels lie on an edge, by row; the last of each row and column are the neighbours'.
+    pub edges: [[bool; GRID]; GRID],
+    /// What sampling it took.
+    pub counters: Counters,
 }
 
 impl Default for Tile {
     fn default() -> Self {
         Self {
-            rgb: std::array::from_fn(|_| vec![0.0; TILE * TILE]),
-            record: vec![Record::default(); TILE * TILE],
-            edges: [0; TILE],
+            rgb: [[0.0; TILE * TILE]; 3],
+            record: [Record(0); TILE * TILE],
+            edges: [[false; GRID]; GRID],
+            counters: Counters::default(),
+        }
+    }
+}
+
+/// Hands the edge pixels that tiles have found beyond their right and lower border on to the tiles
+/// there, `across` to a row.
+pub fn share_edges(tiles: &mut [Tile], across: usize) {
+    for i in 0..tiles.len() {
+        for (right, below) in [(1, 0), (0, 1), (1, 1)] {
+            let to = i + right + below * across;
+            if i % across + right == across || to >= tiles.len() {
+                continue;
+            }
+            for k in 0..TILE {
+                let (x, y) = (k * (1 - right), k * (1 - below));
+                let found = tiles[i].edges[y + TILE * below][x + TILE * right];
+                tiles[to].edges[y][x] |= found;
+            }
         }
     }
 }

@@ -17,40 +17,30 @@ pub struct Lamp {
     /// The cosine c to the axis gives (c - outer) * gain, kept in 0..1.
     outer: f32,
     gain: f32,
-    /// Spots ease in: x² (3 - 2x).
-    smooth: bool,
     /// The lamp stands for a rectangle, whose highlight mirrors show by themselves.
     pub is_emitter: bool,
 }
 
 /// All lamps of a scene: its lights, then one in the middle of each shining rectangle.
 pub fn lamps(scene: &Scene) -> Vec<Lamp> {
-    let lights = scene.lights.iter().map(|light| {
-        let (axis, inner, outer) = match light.kind {
-            LightKind::Point => (Vec3::ZERO, -1.0, -2.0),
-            LightKind::Spot { direction, inner, outer } => (direction, inner, outer),
+    let count = scene.lights.len();
+    let lamp = |i: usize| {
+        let (position, colour, axis, inner, outer) = if i < count {
+            let light = &scene.lights[i];
+            let (axis, inner, outer) = match light.kind {
+                LightKind::Point => (Vec3::ZERO, -1.0, -2.0),
+                LightKind::Spot { direction, inner, outer } => (direction, inner, outer),
+            };
+            (light.position, light.colour, axis, inner, outer)
+        } else {
+            let e = &scene.emitters[i - count];
+            let colour = e.radiance * (e.half[0] * e.half[1] * 4.0 / PI);
+            (e.centre, colour, e.normal(), 1.0, 0.0)
         };
         let gain = 1.0 / (inner - outer).max(1e-6);
-        Lamp {
-            position: light.position,
-            colour: light.colour,
-            axis,
-            outer,
-            gain,
-            smooth: true,
-            is_emitter: false,
-        }
-    });
-    let emitters = scene.emitters.iter().map(|e| Lamp {
-        position: e.centre,
-        colour: e.radiance * (e.half[0] * e.half[1] * 4.0 / PI),
-        axis: e.normal(),
-        outer: 0.0,
-        gain: 1.0,
-        smooth: false,
-        is_emitter: true,
-    });
-    lights.chain(emitters).collect()
+        Lamp { position, colour, axis, outer, gain, is_emitter: i >= count }
+    };
+    (0..count + scene.emitters.len()).map(lamp).collect()
 }
 
 impl Lamp {
@@ -66,6 +56,7 @@ impl Lamp {
     pub fn lobe(&self, d: V3) -> F {
         let c = d.dot(V3::splat(self.axis));
         let x = ((c - splat(self.outer)) * splat(self.gain)).fast_max(F::ZERO).fast_min(F::ONE);
-        if self.smooth { x * x * (splat(3.0) - (x + x)) } else { x }
+        // Spots ease in.
+        if self.is_emitter { x } else { x * x * (splat(3.0) - (x + x)) }
     }
 }

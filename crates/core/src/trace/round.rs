@@ -30,7 +30,7 @@ struct Axial {
 }
 
 impl Axial {
-    #[inline(always)]
+    #[inline(never)]
     fn new(rays: &Rays8, reference: glam::Vec3, axis: glam::Vec3) -> Self {
         let a = V3::splat(axis);
         let d = rays.direction;
@@ -96,12 +96,17 @@ fn clip(ray: &Axial, side: (F, F), hit: F, range: [f32; 2], caps: [bool; 2]) -> 
     Span { enter: pass.select(exit, enter), exit, enter_part: pass.select(exit_part, enter_part), exit_part }
 }
 
+/// Whether no ray comes near a body with ends at `range` along the axis, nowhere wider than `rim`.
+#[inline(never)]
+fn is_far(rays: &Rays8, reference: glam::Vec3, axis: glam::Vec3, range: [f32; 2], rim: f32) -> bool {
+    let half = (range[1] - range[0]) * 0.5;
+    let middle = reference + axis * (range[0] + half);
+    half < f32::INFINITY && !rays.near_ball(middle, (half * half + rim * rim).sqrt())
+}
+
 /// Where `rays` cross the cylinder.
 pub fn cylinder(rays: &Rays8, s: &Cylinder) -> Span {
-    let half = s.length * 0.5;
-    if half < f32::INFINITY
-        && !rays.near_ball(s.base + s.axis * half, (half * half + s.radius * s.radius).sqrt())
-    {
+    if is_far(rays, s.base, s.axis, [0.0, s.length], s.radius) {
         return Span::MISS;
     }
     let ray = Axial::new(rays, s.base, s.axis);
@@ -120,13 +125,8 @@ pub fn cylinder(rays: &Rays8, s: &Cylinder) -> Span {
 
 /// Where `rays` cross the cone.
 pub fn cone(rays: &Rays8, s: &Cone) -> Span {
-    let half = (s.range[1] - s.range[0]) * 0.5;
-    let rim = s.range[1] * s.slope;
-    if half < f32::INFINITY {
-        let middle = s.apex + s.axis * (s.range[0] + half);
-        if !rays.near_ball(middle, (half * half + rim * rim).sqrt()) {
-            return Span::MISS;
-        }
+    if is_far(rays, s.apex, s.axis, s.range, s.range[1] * s.slope) {
+        return Span::MISS;
     }
     let ray = Axial::new(rays, s.apex, s.axis);
     let k = splat(s.slope);
