@@ -3,7 +3,7 @@
 //! All of it follows from six small rules for one side of one bay and the rose; instances mirror,
 //! place and grow them. The camera waits at the portal, flies down the nave and looks up.
 
-use super::paint::{degrees, key, metal, polished, seconds, v};
+use super::paint::{bumps, degrees, key, polished, seconds, surface, v};
 use glam::{Mat3, Vec3};
 use luc_core::math::hash::{hash2, unit};
 use luc_core::math::scalar::sin_cos;
@@ -199,7 +199,6 @@ pub fn scene(frame: u64) -> Scene {
     let sky = |y, r, g, b| Stop { y, colour: v(r, g, b) * 0.8 };
     let direction = (ROSE - position).normalize();
     let glow = |r, g, b, sharpness| Glow { direction, colour: v(r, g, b), sharpness };
-    let steel = v(0.2, 0.28, 0.42);
     Scene {
         camera: Camera { position, target, roll: degrees(track(&ROLL, t)), fov: degrees(54.0) },
         background: Background {
@@ -217,15 +216,9 @@ pub fn scene(frame: u64) -> Scene {
         planes: vec![Plane { point: Vec3::ZERO, normal: Vec3::Y, reach: 90.0, material: 2 }],
         meshes: cathedral(t),
         materials: vec![
-            Material {
-                colour: steel,
-                diffuse: 0.6,
-                specular: Vec3::ONE,
-                reflection: 0.0,
-                ..metal(steel, 0.3)
-            },
-            Material { colour: v(0.1, 0.135, 0.2), roughness: 0.5, ..Material::default() },
-            polished(v(0.05, 0.065, 0.09), 0.14, 1.6),
+            surface(v(0.2, 0.28, 0.42), 0.3, 0.5),
+            surface(v(0.1, 0.135, 0.2), 0.55, 0.1),
+            Material { texture: bumps(0.9, 0.35, 0.04), ..polished(v(0.05, 0.065, 0.09), 0.14, 1.6) },
         ],
         lights: vec![
             Light { position: sun, colour: v(1.0, 0.72, 0.38) * (2.86 * 1.0976e6), kind: LightKind::Point },
@@ -235,7 +228,7 @@ pub fn scene(frame: u64) -> Scene {
                 kind: LightKind::Point,
             },
         ],
-        shading: Shading::CookTorrance,
+        shading: Shading::Ggx,
         ambient: [v(0.06, 0.08, 0.12), v(0.16, 0.26, 0.5)],
         fog: Some(Fog {
             density: 0.021,

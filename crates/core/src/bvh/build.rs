@@ -43,13 +43,15 @@ impl Tree {
         }
         let (parts, count) = builder.parts(&mut order, 0);
         let mut subtrees: [(Vec<Node>, u32); LANES] = Default::default();
-        let (mut rest, builder, mut tasks) = (&mut order[..], &builder, Vec::new());
-        for (part, (nodes, child)) in parts[..count].iter().zip(&mut subtrees) {
-            let (own, others) = rest.split_at_mut(part.to - part.from);
+        let mut rest = &mut order[..];
+        let work = parts[..count].iter().zip(&mut subtrees).map(|(part, subtree)| {
+            let (own, others) = std::mem::take(&mut rest).split_at_mut(part.to - part.from);
             rest = others;
-            tasks.push(move || *child = builder.child(nodes, own, part.from, 1));
-        }
-        parallel::run(tasks.into_iter());
+            (own, subtree, part.from)
+        });
+        parallel::each(work, |_, (own, subtree, from)| {
+            subtree.1 = builder.child(&mut subtree.0, own, from, 1);
+        });
 
         tree.nodes.push(Node::NONE);
         for (lane, part) in parts[..count].iter().enumerate() {
