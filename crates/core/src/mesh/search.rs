@@ -10,7 +10,7 @@ use crate::bvh::Stack;
 use crate::counters::{Counter, Counters};
 use crate::math::lanes::{F, LANES, V3, greatest, least, splat};
 use crate::scene::Scene;
-use crate::trace::{Aim, Crossing, Hits, Rays8};
+use crate::trace::{Aim, Hits, Rays8};
 
 /// Directions that differ by more than this part of their greatest coordinate walk alone.
 const SPREAD: f32 = 0.25;
@@ -35,7 +35,8 @@ fn spread(v: V3) -> F {
 /// Takes over the crossings that come before the best so far. What is looked for is the nearest,
 /// or any: then a hit ends the ray, at -1.
 #[inline(never)]
-fn keep(crossing: &Crossing, id: F, any: bool, best: &mut Hits) {
+fn keep(aim: &Aim, corners: &[V3; 3], id: F, any: bool, best: &mut Hits) {
+    let crossing = aim.cross(corners);
     let nearer = crossing.t.simd_lt(best.t) | (crossing.t.simd_eq(best.t) & id.simd_lt(best.id));
     let closer = crossing.hit & crossing.t.simd_gt(F::ZERO) & nearer;
     let t = if any { splat(-1.0) } else { crossing.t };
@@ -71,14 +72,14 @@ impl Assembly {
             let close = spread(bundle.direction).simd_lt(greatest(size(bundle.direction)) * splat(SPREAD))
                 & spread(bundle.origin).simd_lt(greatest(size(bundle.origin)) * splat(APART));
             let single = !close.all();
-            let (t, id) = (best.t.as_array()[first], best.id.as_array()[first]);
-            let mut found = Hits { t: splat(t), id: splat(id) };
+            let of_first = |v: F| splat(v.as_array()[first]);
+            let mut found = Hits { t: of_first(best.t), id: of_first(best.id) };
             if single {
                 let ray = Rays8 { origin: one(rays.origin), direction: one(rays.direction) };
                 self.walk(scene, &ray, (true, any), &mut found, counters);
                 todo &= todo - 1;
             } else {
-                found.t = asked.select(best.t, found.t);
+                found = Hits { t: asked.select(best.t, found.t), id: asked.select(best.id, found.id) };
                 self.walk(scene, &bundle, (false, any), &mut found, counters);
                 todo = 0;
             }
@@ -118,24 +119,18 @@ impl Assembly {
             let aim = Aim::new(&local);
             let [first, _] = instance.ids(base);
             mesh.tree.walk(&local, limit(best), stack, counters, &mut |items, _, counters| {
-                let mut tests = items.len();
-                counters.add(Counter::FacetTests, tests * if single { 1 } else { LANES });
-                while tests > 0 {
-                    // One ray against all of the leaf, or all rays against one after the other.
-                    tests = if single { 0 } else { tests - 1 };
-                    let index = items[tests] as usize;
-                    let mut id = splat(4.0 * index as f32);
-                    let corners = if single {
-                        let mut index = [index; LANES];
-                        for (index, &item) in index.iter_mut().zip(items) {
-                            *index = item as usize;
-                        }
-                        id = F::new(index.map(|i| 4.0 * i as f32));
-                        gather(&mesh.triangles, index)
-                    } else {
-                        mesh.triangles[index].map(V3::splat)
-                    };
-                    keep(&aim.cross(&corners), id + splat(first), any, best);
+                counters.add(Counter::FacetTests, items.len() * if single { 1 } else { LANES });
+                if single {
+                    // All of the leaf at once; the last lanes repeat its last.
+                    let last = items.len() - 1;
+                    let index = std::array::from_fn(|lane| items[lane.min(last)] as usize);
+                    let id = splat(first) + F::new(index.map(|i| 4.0 * i as f32));
+                    keep(&aim, &gather(&mesh.triangles, index), id, any, best);
+                    return limit(best);
+                }
+                for &item in items {
+                    let corners = mesh.triangles[item as usize].map(V3::splat);
+                    keep(&aim, &corners, splat(first + 4.0 * item as f32), any, best);
                 }
                 limit(best)
             });

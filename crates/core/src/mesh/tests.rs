@@ -3,9 +3,9 @@
 use super::*;
 use crate::counters::Counters;
 use crate::math::lanes::{F, LANES, TRUE, V3, from_bits, splat};
-use crate::scene::{Material, Scene, Triangle};
+use crate::scene::{Material, Scene, Sphere, Triangle};
 use crate::trace::check::{Random, packet, poisoned};
-use crate::trace::{Aim, BLOCKED, Hits, NONE, Rays8, nearest, occlusion};
+use crate::trace::{Aim, BLOCKED, Hits, Rays8, nearest, occlusion};
 use glam::Mat3;
 use std::sync::Arc;
 
@@ -78,7 +78,14 @@ fn scene(random: &mut Random, case: u32) -> Scene {
             if i == 0 { (Mat3::IDENTITY, Vec3::ZERO) } else { (affine(random), random.vector(-2, 3)) };
         instances.push(Instance::new(&mesh, m, origin, i as usize % 2));
     }
-    Scene { meshes: Assembly::new(instances), materials: vec![Material::default(); 2], ..Scene::default() }
+    let mut scene = Scene { materials: vec![Material::default(); 2], ..Scene::default() };
+    // Other shapes before and behind them, or none.
+    for _ in 0..case % 3 {
+        let (centre, radius) = (random.vector(-2, 3), random.size(-2, 1));
+        scene.spheres.push(Sphere { centre, radius, material: 0, blend: 0.0 });
+    }
+    scene.meshes = Assembly::new(instances);
+    scene
 }
 
 /// Rays at the middles, edges and corners of triangles and past them, from anywhere; many axis-parallel.
@@ -110,8 +117,9 @@ fn rays(random: &mut Random, scene: &Scene) -> Rays8 {
 
 /// What testing every triangle finds.
 fn brute_force(scene: &Scene, rays: &Rays8) -> Hits {
-    let mut best = Hits { t: splat(f32::INFINITY), id: splat(NONE) };
-    let mut id = 0.0;
+    let others = Scene { meshes: Assembly::default(), ..scene.clone() };
+    let mut best = nearest(&others, rays, u64::MAX, &mut Counters::default());
+    let mut id = 4.0 * scene.shape_count() as f32;
     for instance in scene.meshes.instances() {
         let aim = Aim::new(&instance.local(rays));
         for triangle in instance.mesh().triangles() {
@@ -135,11 +143,12 @@ fn the_trees_find_what_testing_everything_does() {
             let rays = rays(&mut random, &scene);
             let want = brute_force(&scene, &rays);
             let mut counters = Counters::default();
-            let got = nearest(&scene, &rays, 0, &mut counters);
+            let got = nearest(&scene, &rays, u64::MAX, &mut counters);
             // Shadow rays that end somewhere about the hit.
             let ends = Rays8 { direction: rays.direction * splat(random.size(-2, 4)), ..rays };
             let wanted = from_bits(random.bits() as u8);
-            let shadow = occlusion(&scene, &[], &ends, wanted, 0, &mut counters);
+            let shadow =
+                occlusion(&scene, &[0.0; 2][..scene.spheres.len()], &ends, wanted, u64::MAX, &mut counters);
             let truth = brute_force(&scene, &ends).t.simd_lt(splat(1.0 - 4.0 / 16_777_216.0));
             for lane in 0..LANES {
                 let (o, d) = (rays.origin.lane(lane), rays.direction.lane(lane));
@@ -213,6 +222,7 @@ fn what_lies_in_a_pyramid_is_found() {
     let (mut cases, mut empty) = (0, 0);
     for case in 0..400 {
         let scene = scene(&mut random, case);
+        let meshes_only = Scene { spheres: vec![], ..scene.clone() };
         let one = rays(&mut random, &scene);
         for lane in 0..LANES {
             let (apex, d) = (one.origin.lane(lane), one.direction.lane(lane).normalize());
@@ -232,7 +242,7 @@ fn what_lies_in_a_pyramid_is_found() {
                     let (x, y) = (random.range(-1.0, 1.0), random.range(-1.0, 1.0));
                     (apex, d + (u * x + v * y) * half)
                 });
-                let t = brute_force(&scene, &inside).t;
+                let t = brute_force(&meshes_only, &inside).t;
                 hit |= (0..LANES).any(|i| t.to_array()[i] * inverse(inside.direction.lane(i)) < 0.999);
             }
             let replay = format!("case {case} apex {apex:?} corners {corners:?} ends {ends:?}");

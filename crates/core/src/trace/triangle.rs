@@ -71,6 +71,9 @@ impl Aim {
         let (u, v, w) = (edge(b, c), edge(c, a), edge(a, b));
         let inside = (u.simd_ge(zero) & v.simd_ge(zero) & w.simd_ge(zero))
             | (u.simd_le(zero) & v.simd_le(zero) & w.simd_le(zero));
+        if !inside.any() {
+            return Crossing { t: zero, hit: zero, weights: [F::ONE, zero, zero], sum: F::ONE };
+        }
         let sum = u + v + w;
         let t = (u * a.z + v * b.z + w * c.z) / (sum * self.along);
         Crossing { t, hit: inside & sum.simd_ne(zero), weights: [u, v, w], sum }
