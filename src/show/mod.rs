@@ -8,6 +8,7 @@ mod facets;
 mod gold;
 mod mirror;
 mod paint;
+mod still;
 
 use luc_core::quality::Quality;
 use luc_core::render::Renderer;

@@ -17,6 +17,11 @@ pub const fn v(x: f32, y: f32, z: f32) -> Vec3 {
     Vec3::new(x, y, z)
 }
 
+/// A colour times a strength.
+pub const fn times(c: Vec3, k: f32) -> Vec3 {
+    v(c.x * k, c.y * k, c.z * k)
+}
+
 /// sin(2 pi (t / period + phase)): a swing that takes `period` seconds.
 pub fn swing(t: f32, period: f32, phase: f32) -> f32 {
     sin((t / period + phase) * TAU)
@@ -39,13 +44,13 @@ pub const fn key(time: f32, value: f32, ease: Ease) -> Key {
 }
 
 /// A bare metal: no diffuse part, mirrors in its own colour.
-pub fn metal(f0: Vec3, roughness: f32) -> Material {
-    Material { diffuse: 0.0, f0, roughness, reflection: 1.0, ..Material::default() }
+pub const fn metal(f0: Vec3, roughness: f32) -> Material {
+    Material { diffuse: 0.0, f0, roughness, reflection: 1.0, ..Material::DEFAULT }
 }
 
 /// A polished body with a diffuse part under a clear surface.
-pub fn polished(colour: Vec3, roughness: f32, ior: f32) -> Material {
-    Material { colour, f0: f0(ior), roughness, reflection: 1.0, ior, ..Material::default() }
+pub const fn polished(colour: Vec3, roughness: f32, ior: f32) -> Material {
+    Material { colour, f0: f0(ior), roughness, reflection: 1.0, ior, ..Material::DEFAULT }
 }
 
 /// A surface of microfacets for GGX: mirrors in its colour by the metallic part, as a body of
@@ -53,22 +58,22 @@ pub fn polished(colour: Vec3, roughness: f32, ior: f32) -> Material {
 #[allow(dead_code, reason = "for parts that are being made")]
 pub fn surface(colour: Vec3, roughness: f32, metallic: f32) -> Material {
     let f0 = Vec3::splat(0.034).lerp(colour, metallic);
-    Material { colour, diffuse: 1.0 - metallic, specular: Vec3::ONE, f0, roughness, ..Material::default() }
+    Material { colour, diffuse: 1.0 - metallic, specular: Vec3::ONE, f0, roughness, ..Material::DEFAULT }
 }
 
 /// Albedo that varies by `amount`, with `scale` cells per world unit.
-pub fn grain(scale: f32, amount: f32) -> Texture {
+pub const fn grain(scale: f32, amount: f32) -> Texture {
     Texture { scale, grain: amount, ..Texture::NONE }
 }
 
 /// Relief `depth` high, of which `strength` shows, with `scale` cells per world unit.
 #[allow(dead_code, reason = "for parts that are being made")]
-pub fn bumps(scale: f32, strength: f32, depth: f32) -> Texture {
+pub const fn bumps(scale: f32, strength: f32, depth: f32) -> Texture {
     Texture { scale, bump: strength * depth, ..Texture::NONE }
 }
 
 /// A clear body: `tint` at each surface, `shadow` on light through all of it.
-pub fn glass(tint: Vec3, shadow: Vec3, ior: f32) -> Material {
+pub const fn glass(tint: Vec3, shadow: Vec3, ior: f32) -> Material {
     Material {
         diffuse: 0.0,
         f0: f0(ior),
@@ -77,12 +82,12 @@ pub fn glass(tint: Vec3, shadow: Vec3, ior: f32) -> Material {
         ior,
         tint,
         shadow,
-        ..Material::default()
+        ..Material::DEFAULT
     }
 }
 
 /// Reflectance at normal incidence of a body with index of refraction `ior` in air.
-fn f0(ior: f32) -> Vec3 {
+const fn f0(ior: f32) -> Vec3 {
     let r = (ior - 1.0) / (ior + 1.0);
     Vec3::splat(r * r)
 }

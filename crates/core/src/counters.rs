@@ -28,6 +28,9 @@ counters! {
     CylinderTests "tests of cylinders",
     ConeTests "tests of cones",
     TriangleTests "tests of triangles",
+    FieldTests "tests of fields",
+    FieldSteps "steps to fields",
+    FieldOcclusion "ambient occlusion by fields",
     NodeVisits "nodes of trees",
     FacetTests "tests of facets",
     SmoothFacets "facets with interpolated normals",
@@ -41,6 +44,7 @@ counters! {
     TextureLookups "texture lookups",
     Bumps "bumps of normals",
     FogSegments "fog segments",
+    Beams "rays against beams",
     KnownSurfaces "known surfaces",
     Traced "pixels traced",
     Interpolated "pixels interpolated",
@@ -51,10 +55,19 @@ counters! {
 }
 
 /// A set of counts; sums are exact, so they do not depend on threads.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Counters {
     #[cfg(feature = "counters")]
     counts: [u64; Counter::ALL.len()],
+}
+
+impl Default for Counters {
+    fn default() -> Self {
+        Self {
+            #[cfg(feature = "counters")]
+            counts: [0; Counter::ALL.len()],
+        }
+    }
 }
 
 impl Counters {

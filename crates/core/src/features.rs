@@ -10,16 +10,24 @@ use crate::counters::Counter;
 pub const GGX: bool = cfg!(feature = "ggx");
 /// Relief from patterns.
 pub const BUMPS: bool = cfg!(feature = "bumps");
-
+/// Signed distance fields.
+pub const FIELDS: bool = cfg!(feature = "fields");
+/// Ambient occlusion by fields.
+pub const FIELD_OCCLUSION: bool = cfg!(feature = "field-occlusion");
+/// Beams of light.
+pub const BEAMS: bool = cfg!(feature = "beams");
 /// Triangle meshes.
 pub const MESHES: bool = cfg!(feature = "meshes");
 /// Meshes with interpolated normals.
 pub const SMOOTH: bool = cfg!(feature = "smooth");
 
 /// Each feature with the counter that shows it at work.
-pub const ALL: [(&str, Counter); 4] = [
+pub const ALL: [(&str, Counter); 7] = [
     ("ggx", Counter::Ggx),
     ("bumps", Counter::Bumps),
+    ("fields", Counter::FieldSteps),
+    ("field-occlusion", Counter::FieldOcclusion),
+    ("beams", Counter::Beams),
     ("meshes", Counter::NodeVisits),
     ("smooth", Counter::SmoothFacets),
 ];

@@ -7,7 +7,7 @@
 use crate::counters::Counter;
 use crate::mesh::Instance;
 use crate::quality::{Quality, Rung};
-use crate::scene::{LightKind, Material, Scene, Shading};
+use crate::scene::{Field, LightKind, Material, Scene, Shading};
 
 /// The machinery that a frame calls for, as the counters that it moves.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -34,6 +34,9 @@ impl Plan {
             (Counter::CylinderTests, !scene.cylinders.is_empty()),
             (Counter::ConeTests, !scene.cones.is_empty()),
             (Counter::TriangleTests, !scene.triangles.is_empty()),
+            (Counter::FieldTests, !scene.fields.is_empty()),
+            (Counter::FieldSteps, !scene.fields.is_empty()),
+            (Counter::FieldOcclusion, !scene.fields.is_empty() && scene.occlusion > 0.0),
             (Counter::NodeVisits, !scene.meshes.is_empty()),
             (Counter::FacetTests, !scene.meshes.is_empty()),
             (Counter::SmoothFacets, scene.meshes.instances().iter().any(|i| i.mesh().is_smooth())),
@@ -50,6 +53,7 @@ impl Plan {
             (Counter::TextureLookups, grain),
             (Counter::Bumps, bumps),
             (Counter::FogSegments, scene.fog.is_some()),
+            (Counter::Beams, !scene.beams.is_empty()),
             (Counter::KnownSurfaces, adaptive && known),
             (Counter::Traced, !adaptive || quality.smallest <= 1),
             (Counter::Interpolated, adaptive),
@@ -74,8 +78,9 @@ impl Plan {
 /// What the shapes and meshes of a scene are made of.
 fn materials(scene: &Scene) -> impl Iterator<Item = &Material> {
     let shapes = (0..scene.shape_count()).map(|i| scene.shape(i).material());
+    let mixed = scene.fields.iter().flat_map(|field| &field.nodes).map(|node| node.material);
     let meshes = scene.meshes.instances().iter().map(|i| i.material);
-    shapes.chain(meshes).map(|i| &scene.materials[i])
+    shapes.chain(mixed).chain(meshes).map(|i| &scene.materials[i])
 }
 
 /// Named faults of a scene: data that its quality or the engine's limits can't show.
@@ -89,6 +94,10 @@ pub fn warnings(scene: &Scene, quality: &Quality) -> Vec<&'static str> {
         (quality.depth < 1 && materials().any(|m| m.reflection > 0.0), "mirrors need a depth of one or more"),
         (scene.lights.len() + scene.emitters.len() > 8, "lamps after the eighth cast no shadow"),
         (materials().filter(|m| m.is_transparent()).count() > 23, "glass after the 23rd casts no shadow"),
+        (
+            scene.fields.iter().any(|f| f.nodes.len() > Field::MOST),
+            "nodes of a field after the 32nd are not there",
+        ),
         (scene.meshes.instances().iter().any(clear), "meshes of glass cast no shadow"),
         (scene.shape_count() + facets > 1 << 22, "more shapes and facets than ids"),
         (scene.lights.iter().any(|l| spot(l.kind)), "a spot's inner cone is wider than its outer one"),

@@ -34,6 +34,11 @@ pub struct Quality {
     pub depth: u32,
     /// Rays whose contribution is at most this are not followed, in units of display white.
     pub cutoff: f32,
+    /// How near to a field a ray must come to hit it, world units at the ray's origin; it grows
+    /// with the distance: `epsilon * (1 + t)`.
+    pub epsilon: f32,
+    /// Most steps of a ray that marches; one that is near a body by then has hit it.
+    pub steps: u32,
     /// Leave out shapes and occluders that a tile can't meet. Changes the time, never the picture.
     pub cull: bool,
 }
@@ -53,6 +58,8 @@ impl Quality {
                 samples: 0,
                 depth: 2,
                 cutoff: 0.1,
+                epsilon: 2e-3,
+                steps: 48,
                 cull: true,
             },
         ),
@@ -68,6 +75,8 @@ impl Quality {
                 samples: 0,
                 depth: 3,
                 cutoff: 0.06,
+                epsilon: 1e-3,
+                steps: 64,
                 cull: true,
             },
         ),
@@ -83,6 +92,8 @@ impl Quality {
                 samples: 0,
                 depth: 4,
                 cutoff: 0.04,
+                epsilon: 5e-4,
+                steps: 96,
                 cull: true,
             },
         ),
@@ -98,6 +109,8 @@ impl Quality {
                 samples: 0,
                 depth: 5,
                 cutoff: 0.02,
+                epsilon: 3e-4,
+                steps: 128,
                 cull: true,
             },
         ),
@@ -113,6 +126,8 @@ impl Quality {
                 samples: 0,
                 depth: 7,
                 cutoff: 0.01,
+                epsilon: 2e-4,
+                steps: 192,
                 cull: true,
             },
         ),
@@ -128,6 +143,8 @@ impl Quality {
                 samples: 15,
                 depth: 12,
                 cutoff: 0.001,
+                epsilon: 1e-4,
+                steps: 384,
                 cull: true,
             },
         ),

@@ -30,9 +30,8 @@ core::arch::global_asm!(
     start = sym start,
 );
 
-/// Seconds that decoding may take at least; a second for each 16 kB of program come on top, which
-/// any machine of use does far faster.
-const PATIENCE: usize = 8;
+/// Seconds that decoding may take, which is a second of work, on a machine as busy as can be.
+const PATIENCE: usize = 60;
 
 unsafe extern "C" fn start(stack: *const usize, header: &Header, payload: *const u8) -> ! {
     let name = &header.name;
@@ -42,7 +41,7 @@ unsafe extern "C" fn start(stack: *const usize, header: &Header, payload: *const
         die(name, b": needs a processor with AVX2, and this one has none\n", 2);
     }
 
-    alarm(PATIENCE + (header.output as usize >> 14));
+    alarm(PATIENCE);
     // SAFETY: fresh memory of that many bytes.
     let program =
         unsafe { slice::from_raw_parts_mut(memory(header.output as usize), header.output as usize) };

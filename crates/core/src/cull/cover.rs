@@ -17,13 +17,7 @@ use glam::{Vec2, Vec3};
 pub fn may_cover(stage: &Stage, index: usize, centre: Vec2, half: Vec2, depths: &[f32; 4]) -> bool {
     let deepest = depths.iter().fold(0.0_f32, |m, &d| m.max(d));
     match stage.scene.shape(index) {
-        Shape::Sphere(s) => {
-            let c = stage.view.local(s.centre);
-            let reach = half.length();
-            let front = nearest_in_cone(c, s.radius, centre.extend(1.0).normalize(), reach);
-            let widest = centre.length() + reach;
-            front / (1.0 + widest * widest).sqrt() < deepest * 1.000_01
-        }
+        Shape::Sphere(s) => ball_may_cover(stage.view.local(s.centre), s.radius, centre, half, deepest),
         Shape::Triangle(s) => {
             let [a, b, c] = s.corners.map(|p| stage.view.local(p));
             let n = (b - a).cross(c - a);
@@ -37,4 +31,13 @@ pub fn may_cover(stage: &Stage, index: usize, centre: Vec2, half: Vec2, depths: 
         }
         _ => true,
     }
+}
+
+/// Whether a ball (middle in view coordinates) may lie before the depth `deepest` in a cell.
+#[inline(never)]
+pub fn ball_may_cover(c: Vec3, radius: f32, centre: Vec2, half: Vec2, deepest: f32) -> bool {
+    let reach = half.length();
+    let front = nearest_in_cone(c, radius, centre.extend(1.0).normalize(), reach);
+    let widest = centre.length() + reach;
+    front / (1.0 + widest * widest).sqrt() < deepest * 1.000_01
 }

@@ -7,7 +7,7 @@
 //! k = (u z ± r sqrt(u² + z² - r²)) / (z² - r²).
 
 use crate::math::lanes::{F, splat};
-use crate::scene::Scene;
+use crate::scene::{Beam, Scene};
 use crate::trace::Shape;
 use glam::{Mat3, Vec2, Vec3};
 
@@ -112,7 +112,7 @@ impl Dop {
     }
 
     /// Bound of the ball at `c`, view coordinates.
-    fn ball(c: Vec3, r: f32) -> Dop {
+    pub fn ball(c: Vec3, r: f32) -> Dop {
         if c.z + r < 0.0 {
             return Dop::NOWHERE;
         }
@@ -144,6 +144,17 @@ impl Dop {
         let (e, slack) = (x + y, (x.abs() + y.abs()) * splat(1e-6) + splat(1e-6));
         self.lo = self.lo.fast_min(e - slack);
         self.hi = self.hi.fast_max(e + slack);
+    }
+
+    /// Bound of a box with these half sides along `axes` (columns, world).
+    #[inline(never)]
+    pub fn cuboid(view: &View, centre: Vec3, axes: Mat3, half: Vec3) -> Dop {
+        let sign = |i: usize, bit: usize| if i & bit == 0 { -1.0 } else { 1.0 };
+        let corners = (0..8).map(|i| {
+            let out = Vec3::new(sign(i, 1), sign(i, 2), sign(i, 4)) * half;
+            view.local(centre + axes * out)
+        });
+        Dop::hull(Dop::along(Vec2::X), corners)
     }
 
     /// Bound of the hull of two discs across `axis` (world) of radii `r` around `a` and `b`.
@@ -215,6 +226,21 @@ impl Dop {
         Dop::discs(view, axis, (at(s), r), (at(e), r)).towards(v).towards(-v)
     }
 
+    /// Bound of all that a beam lights up, as seen in `view` by rays whose footprints have the
+    /// width `pixel` at one unit.
+    pub fn of_beam(view: &View, beam: &Beam, pixel: f32) -> Dop {
+        let far = (beam.from - view.origin).length().max((beam.to - view.origin).length());
+        let blur = 0.5 * pixel * far;
+        let reach = Beam::END * (beam.width * beam.width + blur * blur).sqrt();
+        let (axis, length) = beam.along();
+        if length > 0.0 {
+            let beyond = axis * reach;
+            Dop::discs(view, axis, (beam.from - beyond, reach), (beam.to + beyond, reach))
+        } else {
+            Dop::ball(view.local(beam.from), reach)
+        }
+    }
+
     /// Bound of a shape as seen in `view`.
     pub fn of(view: &View, shape: Shape) -> Dop {
         match shape {
@@ -239,6 +265,7 @@ impl Dop {
                     .fold(Vec2::ZERO, |m, e| if e.length_squared() > m.length_squared() { e } else { m });
                 Dop::hull(Dop::with_edges(longest, [edges[0], edges[1]]), [a, b, c].into_iter())
             }
+            Shape::Field(s) => Dop::cuboid(view, (s.lo + s.hi) * 0.5, Mat3::IDENTITY, (s.hi - s.lo) * 0.5),
         }
     }
 

@@ -2,10 +2,12 @@
 
 mod cover;
 mod dop;
+mod node;
 mod shaft;
 #[cfg(test)]
 mod tests;
 
 pub use cover::may_cover;
 pub use dop::{Dop, View, dops};
+pub use node::{FieldNode, field_nodes};
 pub use shaft::{Region, Shaft, occluders, shafts};

@@ -7,14 +7,17 @@ use super::dop::nearest_in_cone;
 use super::*;
 use crate::counters::Counters;
 use crate::math::lanes::{F, V3};
-use crate::scene::{Cone, Cylinder, Light, LightKind, Material, Plane, Scene, Sphere, Triangle};
+use crate::quality::Quality;
+use crate::scene::{
+    Cone, Cylinder, Field, Join, Light, LightKind, Material, Node, Plane, Scene, Sphere, Triangle,
+};
 use crate::shade::lamps;
 use crate::trace::check::{Random, packet};
 use crate::trace::{Rays8, nearest, surface};
 use glam::{Vec2, Vec3};
 
-const KINDS: [&str; 7] =
-    ["sphere", "plane", "cylinder", "infinite cylinder", "cone", "infinite cone", "triangle"];
+const KINDS: [&str; 8] =
+    ["sphere", "plane", "cylinder", "infinite cylinder", "cone", "infinite cone", "triangle", "field"];
 
 /// A scene with one shape of a kind within a few units of the origin.
 fn one(random: &mut Random, kind: usize) -> Scene {
@@ -39,6 +42,14 @@ fn one(random: &mut Random, kind: usize) -> Scene {
             let range = [from, if kind == 5 { f32::INFINITY } else { to }];
             let caps = [random.one_in(2), random.one_in(2)];
             scene.cones.push(Cone { apex: at, axis, slope: random.size(-5, 2), range, caps, material: 0 });
+        }
+        7 => {
+            let size = random.size(-4, 1);
+            let beside = at + axis * size;
+            scene.fields.push(Field::new(vec![
+                Node::sphere(at, size),
+                Node::cuboid(beside, Vec3::splat(size), 0.2 * size).joined(Join::Union, 0.5 * size),
+            ]));
         }
         _ => {
             let corners = [at, at + random.vector(-4, 2), at + random.vector(-4, 2)];
@@ -72,6 +83,9 @@ fn point(random: &mut Random, scene: &Scene) -> Vec3 {
         let end = if to < f32::INFINITY { to } else { from + random.size(-4, 8) };
         return about(random, s.apex + s.axis * from, s.axis, end - from, &|h| s.slope * (h + from));
     }
+    if let Some(s) = scene.fields.first() {
+        return s.nodes[0].centre + random.direction() * s.nodes[0].rounding * random.range(0.9, 1.3);
+    }
     let [a, b, c] = scene.triangles[0].corners;
     let (mut x, mut y) = (random.range(0.0, 1.0), random.range(0.0, 1.0));
     if x + y > 1.0 {
@@ -82,7 +96,7 @@ fn point(random: &mut Random, scene: &Scene) -> Vec3 {
 }
 
 fn hits(scene: &Scene, rays: &Rays8) -> (F, F) {
-    let hits = nearest(scene, rays, u64::MAX, &mut Counters::default());
+    let hits = nearest(scene, &Quality::PRESETS[3].1, rays, u64::MAX, &mut Counters::default());
     (hits.t, hits.id)
 }
 
@@ -190,7 +204,7 @@ fn lit_points_are_not_in_the_shadow_of_their_own_ball() {
         });
         let (t, id) = hits(&scene, &rays);
         let solid = id.simd_ge(F::ZERO);
-        let s = surface(&scene, &rays, solid.select(t, F::ZERO), id, F::ZERO);
+        let s = surface(&scene, &Quality::PRESETS[3].1, &rays, solid.select(t, F::ZERO), id, F::ZERO);
         let start = s.point + s.outward * s.clearance;
         let to_lamp = V3::splat(lamp) - start;
         let lit = solid & !s.inside & s.outward.dot(to_lamp.normalize()).simd_gt(F::splat(1e-6));

@@ -32,6 +32,12 @@ pub const LANE_INDEX: U = U::new([0, 1, 2, 3, 4, 5, 6, 7]);
 /// The same as numbers.
 pub const RAMP: F = F::new([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
 
+/// The first eight of `numbers`; zeros if there are fewer.
+#[inline(always)]
+pub fn load(numbers: &[f32]) -> F {
+    F::new(numbers.first_chunk().copied().unwrap_or_default())
+}
+
 /// Eight copies of `v`.
 ///
 /// In constants use [`F::splat`]: at run time, compiled for size, that writes eight numbers in a

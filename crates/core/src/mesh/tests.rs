@@ -3,11 +3,14 @@
 use super::*;
 use crate::counters::Counters;
 use crate::math::lanes::{F, LANES, TRUE, V3, from_bits, splat};
+use crate::quality::Quality;
 use crate::scene::{Material, Scene, Sphere, Triangle};
 use crate::trace::check::{Random, packet, poisoned};
 use crate::trace::{Aim, BLOCKED, Hits, Rays8, nearest, occlusion};
 use glam::Mat3;
 use std::sync::Arc;
+
+const HIGH: &Quality = &Quality::PRESETS[Quality::DEFAULT].1;
 
 /// Triangles of one of several kinds.
 fn soup(random: &mut Random, kind: u32) -> Vec<[Vec3; 3]> {
@@ -118,7 +121,7 @@ fn rays(random: &mut Random, scene: &Scene) -> Rays8 {
 /// What testing every triangle finds.
 fn brute_force(scene: &Scene, rays: &Rays8) -> Hits {
     let others = Scene { meshes: Assembly::default(), ..scene.clone() };
-    let mut best = nearest(&others, rays, u64::MAX, &mut Counters::default());
+    let mut best = nearest(&others, HIGH, rays, u64::MAX, &mut Counters::default());
     let mut id = 4.0 * scene.shape_count() as f32;
     for instance in scene.meshes.instances() {
         let aim = Aim::new(&instance.local(rays));
@@ -143,12 +146,19 @@ fn the_trees_find_what_testing_everything_does() {
             let rays = rays(&mut random, &scene);
             let want = brute_force(&scene, &rays);
             let mut counters = Counters::default();
-            let got = nearest(&scene, &rays, u64::MAX, &mut counters);
+            let got = nearest(&scene, HIGH, &rays, u64::MAX, &mut counters);
             // Shadow rays that end somewhere about the hit.
             let ends = Rays8 { direction: rays.direction * splat(random.size(-2, 4)), ..rays };
             let wanted = from_bits(random.bits() as u8);
-            let shadow =
-                occlusion(&scene, &[0.0; 2][..scene.spheres.len()], &ends, wanted, u64::MAX, &mut counters);
+            let shadow = occlusion(
+                &scene,
+                HIGH,
+                &[0.0; 2][..scene.spheres.len()],
+                &ends,
+                wanted,
+                u64::MAX,
+                &mut counters,
+            );
             let truth = brute_force(&scene, &ends).t.simd_lt(splat(1.0 - 4.0 / 16_777_216.0));
             for lane in 0..LANES {
                 let (o, d) = (rays.origin.lane(lane), rays.direction.lane(lane));
@@ -185,7 +195,8 @@ fn a_mesh_where_it_was_made_equals_single_triangles() {
         let single = Scene { triangles, ..Scene::default() };
         for _ in 0..500 {
             let rays = rays(&mut random, &placed);
-            let hits = [&placed, &single].map(|s| nearest(s, &rays, u64::MAX, &mut Counters::default()));
+            let hits =
+                [&placed, &single].map(|s| nearest(s, HIGH, &rays, u64::MAX, &mut Counters::default()));
             assert_eq!((hits[0].t, hits[0].id), (hits[1].t, hits[1].id), "case {case}: {:?}", rays.origin);
         }
     }
@@ -203,7 +214,7 @@ fn a_poisoned_ray_hits_nothing_at_nan_and_leaves_its_neighbours_alone() {
             let mut rays = clean;
             rays.origin.set_lane(lane, ray.0);
             rays.direction.set_lane(lane, ray.1);
-            let found = |rays: &Rays8| nearest(&scene, rays, u64::MAX, &mut Counters::default());
+            let found = |rays: &Rays8| nearest(&scene, HIGH, rays, u64::MAX, &mut Counters::default());
             let (alone, together) = (found(&clean), found(&rays));
             let (t, id) = (together.t.to_array(), together.id.to_array());
             assert!(t[lane] > 0.0 && (t[lane] < f32::INFINITY) == (id[lane] >= 0.0), "{ray:?}");
@@ -211,7 +222,7 @@ fn a_poisoned_ray_hits_nothing_at_nan_and_leaves_its_neighbours_alone() {
                 let (want, id_want) = (alone.t.to_array()[i], alone.id.to_array()[i]);
                 assert_eq!((t[i], id[i]), (want, id_want), "case {case}, poisoned by {ray:?} in {lane}");
             }
-            occlusion(&scene, &[], &rays, TRUE, 0, &mut Counters::default());
+            occlusion(&scene, HIGH, &[], &rays, TRUE, 0, &mut Counters::default());
         }
     }
 }

@@ -45,13 +45,13 @@ pub struct Glow {
 }
 
 impl Glow {
-    /// Makes it black, of this size.
+    /// Gives it this size; what it holds is then still to be written.
     fn reset(&mut self, width: usize, height: usize, scale: usize) {
         (self.width, self.height, self.scale) = (width, height, scale);
         let length = self.line() * (height + 2 * REACH);
-        for values in [&mut self.light, &mut self.along] {
-            values.clear();
-            values.resize(length, 0.0);
+        if self.light.len() != length {
+            self.light = vec![0.0; length];
+            self.along = vec![0.0; length];
         }
     }
 
@@ -191,6 +191,7 @@ fn bright(stage: &Stage, tiles: &[Tile], glow: &mut Glow) -> bool {
     let mean = 1.0 / (side * side) as f32;
     let any = AtomicBool::new(false);
     let rows = &mut glow.light[REACH * line..];
+    rows.fill(0.0);
     parallel::each(rows.chunks_mut(ROWS * line), |strip, rows| {
         let first = strip * ROWS * side;
         for y in first..h.min(first + ROWS * side) {

@@ -7,7 +7,7 @@
 use super::bloom::{Bloom, Glow};
 use crate::counters::{Counter, Counters};
 use crate::math::hash::{hash2, mix_x8, unit_x8};
-use crate::math::lanes::{F, LANE_INDEX, RAMP, V3, splat, splat_u};
+use crate::math::lanes::{F, LANE_INDEX, RAMP, V3, load, splat, splat_u};
 use crate::parallel;
 use crate::render::Stage;
 use crate::sample::{Kind, TILE, Tile};
@@ -52,9 +52,8 @@ fn finish_row(
     let seed = splat_u(hash2(n as u32, 0));
     for (base, out) in row.chunks_mut(8).enumerate() {
         let at = (y % TILE) * TILE + base * 8;
-        let lanes = |plane: &[f32]| F::new(plane[at..at + 8].try_into().unwrap_or_default());
         let [r, g, b] = &tile.rgb;
-        let mut linear = V3 { x: lanes(r), y: lanes(g), z: lanes(b) };
+        let mut linear = V3 { x: load(&r[at..]), y: load(&g[at..]), z: load(&b[at..]) };
         let x = x + base * 8;
         if let Some(glow) = glow {
             linear += glow.light(x, y, glow.scale) * splat(1.0 / grade.exposure);

@@ -4,7 +4,7 @@ use super::Stage;
 use crate::counters::Counters;
 use crate::post::Bloom;
 use crate::quality::Quality;
-use crate::sample::{Scratch, TILE, Tile, refine, share_edges, smooth_edges};
+use crate::sample::{Scratch, TILE, Tile, beams, refine, share_edges, smooth_edges};
 use crate::scene::Scene;
 use crate::{parallel, post};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -57,7 +57,7 @@ impl Renderer {
         let down = (height as usize).div_ceil(TILE);
         self.tiles.resize_with(across * down, Tile::default);
         let pool = &self.scratch;
-        let passes: [Pass; 2] = [refine, smooth_edges];
+        let passes: [Pass; 3] = [refine, smooth_edges, beams];
         self.counters = Counters::default();
         for pass in passes {
             parallel::each(self.tiles.iter_mut(), |i, tile| {

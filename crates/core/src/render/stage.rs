@@ -1,6 +1,6 @@
 //! A scene made ready for one frame: what every ray asks for, computed once.
 
-use crate::cull::{Dop, Shaft, View, dops, shafts};
+use crate::cull::{Dop, FieldNode, Shaft, View, dops, field_nodes, shafts};
 use crate::features;
 use crate::math::lanes::{F, V3, splat};
 use crate::post::Display;
@@ -32,6 +32,10 @@ pub struct Stage<'a> {
     pub tints: Vec<Vec3>,
     /// Bounds of the shapes on the screen.
     pub dops: Vec<Dop>,
+    /// Bounds of the bodies that fields are joined of.
+    pub nodes: Vec<FieldNode>,
+    /// Bounds of the beams on the screen.
+    pub beams: Vec<Dop>,
     /// Bounds of the shapes as the lamps that cast shadows see them.
     pub shafts: Vec<Vec<Shaft>>,
     /// From linear light to display values.
@@ -60,13 +64,16 @@ impl<'a> Stage<'a> {
         }
         let lamps = lamps(scene);
         let shafts = lamps.iter().take(MAX_LAMPS).map(|lamp| shafts(scene, lamp)).collect();
+        let pixel = 2.0 * scene.camera.half_width() / width as f32;
         Self {
             scene,
             quality: *quality,
             width,
             height,
-            pixel: 2.0 * scene.camera.half_width() / width as f32,
+            pixel,
             dops: dops(scene, &view),
+            nodes: field_nodes(scene, &view),
+            beams: scene.beams.iter().map(|beam| Dop::of_beam(&view, beam, pixel)).collect(),
             view,
             lamps,
             bits,
@@ -103,17 +110,24 @@ impl<'a> Stage<'a> {
         (right * x + up * y + forward).normalize()
     }
 
-    /// Whether a hit id is that of a facet of a mesh that stands for something curved.
-    pub fn is_smooth(&self, id: f32) -> bool {
-        let shape = id.max(0.0) as usize >> 2;
-        features::SMOOTH
-            && shape >= self.scene.shape_count()
-            && matches!(self.scene.shape(shape), Shape::Facet(instance, _) if instance.mesh().is_smooth())
+    /// What is interpolated on the shape with this hit id. Where a field's surface lies between the
+    /// samples is not known without marching, nor that of a curved mesh from one facet: there it is
+    /// the colour.
+    pub fn rung(&self, id: f32) -> Rung {
+        let (shape, count) = (id.max(0.0) as usize >> 2, self.scene.shape_count());
+        let vague = if id < 0.0 {
+            false
+        } else if shape < count {
+            shape >= count - self.scene.fields.len()
+        } else {
+            features::SMOOTH && self.scene.meshes.facet(shape - count).0.mesh().is_smooth()
+        };
+        if vague { Rung::Colour } else { self.quality.rung }
     }
 
-    /// Whether direct light is computed at each pixel, so that only the rest is interpolated.
-    pub fn exact_surface(&self) -> bool {
-        self.quality.rung == Rung::Surface
+    /// Whether the shape is a field without finite bodies, which can't be bounded.
+    pub fn endless(&self, index: usize) -> bool {
+        matches!(self.scene.shape(index), Shape::Field(f) if f.nodes.iter().all(|n| n.core().is_none()))
     }
 
     /// Mask of the shapes that may show in the square of `side` px at `corner`, see

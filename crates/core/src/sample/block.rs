@@ -5,11 +5,11 @@ use crate::quality::Rung;
 use crate::render::Stage;
 use crate::scene::Material;
 use crate::shade::Codes;
-use crate::trace::relief_within;
+use crate::trace::{Shape, relief_within};
 use glam::Vec3;
 
 /// Eight samples that were traced as one packet.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 pub struct Block {
     /// Linear light.
     pub colour: V3,
@@ -35,6 +35,8 @@ pub struct Block {
     pub point: V3,
     /// Shading normal there.
     pub normal: V3,
+    /// Node of a field that has most of the surface there.
+    pub node: F,
     /// Visibility of the lamps there.
     pub codes: Codes,
 }
@@ -107,9 +109,15 @@ impl<'a> Sample<'a> {
     pub fn normal(self) -> Vec3 {
         self.block.normal.lane(self.lane)
     }
-    /// What the first hit is made of.
+    pub fn node(self) -> f32 {
+        self.block.node.as_array()[self.lane]
+    }
+    /// What the first hit is made of, if its surface is known between samples: a field's is not.
     pub fn material<'s>(self, stage: &Stage<'s>) -> Option<&'s Material> {
         let shape = (self.id() >= 0.0).then(|| stage.scene.shape(self.id() as usize >> 2))?;
+        if matches!(shape, Shape::Field(_)) {
+            return None;
+        }
         Some(&stage.scene.materials[shape.material()])
     }
     /// Whether the first surface has relief with smaller cells than `side` px, which samples that

@@ -8,6 +8,7 @@ use super::block::Sample;
 use super::refine::{Cell, Corners};
 use super::tile::{Kind, Record, TILE, Tile};
 use crate::counters::{Counter, Counters};
+use crate::features;
 use crate::math::lanes::{F, LANE_INDEX, U, V3, splat, splat_u};
 use crate::quality::Rung;
 use crate::render::Stage;
@@ -19,14 +20,8 @@ use glam::Vec3;
 /// Half an output step: colours closer than this display the same.
 const SAME: f32 = 0.5 / 255.0;
 
-/// A value over a cell, as bilinear coefficients.
-struct Patch {
-    a: V3,
-    b: V3,
-    c: V3,
-    d: V3,
-    bump: V3,
-}
+/// A value over a cell: at the corners, and the bump.
+struct Patch([Vec3; 5]);
 
 impl Patch {
     #[inline(never)]
@@ -34,14 +29,14 @@ impl Patch {
         let [a, b, c, d] = known.corners.map(value);
         let mean = (a + b + c + d) * 0.25;
         let bump = known.centre.map_or(Vec3::ZERO, |s| (value(s) - mean) * 16.0);
-        Patch { a: V3::splat(a), b: V3::splat(b), c: V3::splat(c), d: V3::splat(d), bump: V3::splat(bump) }
+        Patch([a, b, c, d, bump])
     }
 
     fn at(&self, x: F, y: F) -> V3 {
-        let upper = self.a + (self.b - self.a) * x;
-        let lower = self.c + (self.d - self.c) * x;
-        let bump = x * (F::ONE - x) * y * (F::ONE - y);
-        upper + (lower - upper) * y + self.bump * bump
+        let [a, b, c, d, bump] = self.0.map(V3::splat);
+        let upper = a + (b - a) * x;
+        let lower = c + (d - c) * x;
+        upper + (lower - upper) * y + bump * (x * (F::ONE - x) * y * (F::ONE - y))
     }
 }
 
@@ -70,21 +65,24 @@ pub(super) fn fill(
     let rung = match (smooth, textured) {
         _ if first.relief_within(stage, cell.size) => Rung::Surface,
         (true, false) => Rung::Colour,
-        (true, true) => stage.quality.rung.min(Rung::Light),
-        // Between the facets of a curved mesh one facet says nothing of the surface.
-        (false, _) if stage.is_smooth(first.id()) => Rung::Colour,
-        (false, _) => stage.quality.rung,
+        (true, true) => stage.rung(first.id()).min(Rung::Light),
+        (false, _) => stage.rung(first.id()),
     };
+    if features::BEAMS && !stage.scene.beams.is_empty() {
+        fill_nearness(cell, known, tile);
+    }
     let scale = splat(1.0 / cell.size as f32);
     let shift = cell.size.trailing_zeros();
-    let patch = match rung {
-        Rung::Colour => Patch::of(known, |s| s.colour()),
-        Rung::Light if textured => Patch::of(known, |s| s.colour() - s.irradiance() * s.albedo()),
-        Rung::Light => Patch::of(known, |s| s.colour()),
-        Rung::Surface => Patch::of(known, |s| s.indirect()),
-    };
+    let patch = Patch::of(
+        known,
+        match rung {
+            Rung::Light if textured => |s| s.colour() - s.irradiance() * s.albedo(),
+            Rung::Colour | Rung::Light => |s| s.colour(),
+            Rung::Surface => |s| s.indirect(),
+        },
+    );
     let light = (rung == Rung::Light && textured).then(|| Patch::of(known, |s| s.irradiance()));
-    for base in (0..count).step_by(8) {
+    for base in (0..count.div_ceil(8)).map(|i| 8 * i) {
         let place = |lane: usize| {
             let i = base + lane;
             (i & (cell.size - 1), i >> shift)
@@ -118,6 +116,17 @@ pub(super) fn fill(
     }
 }
 
+/// Depths between the corners: over a plane, one over the depth is linear on the screen.
+fn fill_nearness(cell: Cell, known: &Corners, tile: &mut Tile) {
+    let [a, b, c, d] = known.corners.map(|s| 1.0 / s.depth());
+    for i in 0..cell.size * cell.size {
+        let (column, row) = (i % cell.size, i / cell.size);
+        let (x, y) = (column as f32 / cell.size as f32, row as f32 / cell.size as f32);
+        let (upper, lower) = (a + (b - a) * x, c + (d - c) * x);
+        tile.nearness[(cell.y + row) * TILE + cell.x + column] = upper + (lower - upper) * y;
+    }
+}
+
 /// Whole numbers under 2^23 as f32: in the low bits of 2^23, which is then taken off.
 fn small(i: U) -> F {
     F::from_bits(i | splat_u(0x4b00_0000)) - splat(8_388_608.0)
@@ -125,20 +134,24 @@ fn small(i: U) -> F {
 
 /// Rays through pixels, and where they meet the shape of `first` (0 where they don't).
 #[inline(never)]
-fn meet(stage: &Stage, first: Sample, px: F, py: F) -> (Rays8, F) {
+fn meet(stage: &Stage, first: Sample, px: F, py: F, counters: &mut Counters) -> (Rays8, F) {
     let rays = Rays8 { origin: V3::splat(stage.scene.camera.position), direction: stage.directions(px, py) };
     if first.id() < 0.0 {
         return (rays, splat(f32::INFINITY));
     }
-    let (t, _) = stage.scene.shape(first.id() as usize >> 2).span(&rays).first();
+    let (t, _) = stage
+        .scene
+        .shape(first.id() as usize >> 2)
+        .span(&rays, splat(f32::INFINITY), &stage.quality, counters)
+        .first();
     (rays, t.simd_gt(F::ZERO).select(t, splat(first.depth())))
 }
 
 /// Albedo of the known shape at pixels.
 fn albedo(stage: &Stage, first: Sample, px: F, py: F, counters: &mut Counters) -> V3 {
     counters.add(Counter::KnownSurfaces, 8);
-    let (rays, t) = meet(stage, first, px, py);
-    let s = surface(stage.scene, &rays, t, splat(first.id()), splat(stage.pixel));
+    let (rays, t) = meet(stage, first, px, py, counters);
+    let s = surface(stage.scene, &stage.quality, &rays, t, splat(first.id()), splat(stage.pixel));
     s.count(counters);
     s.colour(Channel::Colour)
 }
@@ -148,20 +161,27 @@ fn albedo(stage: &Stage, first: Sample, px: F, py: F, counters: &mut Counters) -
 #[inline(never)]
 fn known_surface(stage: &Stage, first: Sample, px: F, py: F, counters: &mut Counters) -> V3 {
     counters.add(Counter::KnownSurfaces, 8);
-    let (rays, t) = meet(stage, first, px, py);
+    let (rays, t) = meet(stage, first, px, py, counters);
     let spread = splat(stage.pixel);
     let light = if first.id() <= NONE {
         counters.add(Counter::DiscTests, 8 * stage.scene.background.discs.len());
         counters.add(Counter::Glows, 8 * stage.scene.background.glows.len());
         shade::background(&stage.scene.background, &rays, spread).0
     } else {
-        let s = surface(stage.scene, &rays, t, splat(first.id()), spread);
+        let s = surface(stage.scene, &stage.quality, &rays, t, splat(first.id()), spread);
         s.count(counters);
         let mut codes = first.codes();
         let view = -rays.direction;
         let all = F::ZERO.simd_gt(splat(-1.0));
         let lit = shade::direct(stage, &s, view, all, Visibility::Known, &mut codes, counters);
-        let local = shade::local(stage, &s, &shade::split(stage.scene.shading, &s, rays.direction), lit);
+        let local = shade::local(
+            stage,
+            &s,
+            &shade::split(stage.scene.shading, &s, rays.direction),
+            lit,
+            all,
+            counters,
+        );
         local.irradiance * s.colour(Channel::Colour) + local.rest
     };
     match &stage.scene.fog {

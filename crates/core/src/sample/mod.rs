@@ -4,6 +4,7 @@
 //! the result depends neither on threads nor on order. Pixels on edges are found by all tiles
 //! first and get their additional samples in a second pass.
 
+mod beams;
 mod block;
 mod edges;
 mod interpolate;
@@ -12,6 +13,7 @@ mod refine;
 mod tile;
 mod wave;
 
+pub use beams::beams;
 pub use edges::smooth_edges;
 pub use refine::refine;
 pub use tile::{Kind, Record, TILE, Tile, share_edges};

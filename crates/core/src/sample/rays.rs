@@ -1,10 +1,10 @@
 //! Lists of rays on their way to samples, in packets of eight.
 
-use crate::math::lanes::{F, V3, splat};
+use crate::math::lanes::{F, V3};
 use crate::trace::Rays8;
 
 /// Eight rays and what their light is for.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 pub struct Packet {
     /// The rays; directions are unit vectors.
     pub rays: Rays8,
@@ -16,7 +16,7 @@ pub struct Packet {
     pub samples: [u32; 8],
 }
 
-/// A list of rays. Lanes past its end repeat another ray.
+/// A list of rays. Lanes past its end hold other rays, which nobody asks for.
 #[derive(Default)]
 pub struct RayList {
     /// The packets, all full but perhaps the last.
@@ -32,26 +32,19 @@ impl RayList {
         self.count = 0;
     }
 
-    /// Appends a ray: one lane of these vectors.
+    /// Appends one lane of `from` as a ray for `sample`.
     #[inline(never)]
-    pub fn push(&mut self, lane: usize, rays: &Rays8, weight: V3, spread: F, sample: u32) {
-        let (origin, direction, weight) =
-            (rays.origin.lane(lane), rays.direction.lane(lane), weight.lane(lane));
-        let spread = spread.as_array()[lane];
+    pub fn push(&mut self, from: &Packet, lane: usize, sample: u32) {
         let at = self.count & 7;
         if at == 0 {
-            self.packets.push(Packet {
-                rays: Rays8 { origin: V3::splat(origin), direction: V3::splat(direction) },
-                weight: V3::splat(weight),
-                spread: splat(spread),
-                samples: [sample; 8],
-            });
-        } else if let Some(packet) = self.packets.last_mut() {
-            packet.rays.origin.set_lane(at, origin);
-            packet.rays.direction.set_lane(at, direction);
-            packet.weight.set_lane(at, weight);
-            packet.spread.as_mut_array()[at] = spread;
-            packet.samples[at] = sample;
+            self.packets.push(*from);
+        }
+        if let Some(Packet { rays, weight, spread, samples }) = self.packets.last_mut() {
+            rays.origin.set_lane(at, from.rays.origin.lane(lane));
+            rays.direction.set_lane(at, from.rays.direction.lane(lane));
+            weight.set_lane(at, from.weight.lane(lane));
+            spread.as_mut_array()[at] = from.spread.as_array()[lane & 7];
+            samples[at] = sample;
         }
         self.count += 1;
     }

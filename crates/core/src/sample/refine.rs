@@ -16,6 +16,7 @@ use super::tile::{GRID, Kind, Record, TILE, Tile};
 use super::wave::{Position, Scratch, trace};
 use crate::counters::{Counter, Counters};
 use crate::cull::{Region, may_cover, occluders};
+use crate::quality::Rung;
 use crate::render::Stage;
 use crate::shade::MAX_LAMPS;
 use crate::trace::{BLOCKED, Shape};
@@ -96,6 +97,7 @@ pub fn refine(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize), tile
             };
             if cell.size == 1 {
                 tile.set(cell.x, cell.y, known.corners[0].colour(), Record::new(Kind::Traced, 1));
+                tile.nearness[cell.y * TILE + cell.x] = 1.0 / known.corners[0].depth();
                 scratch.counters.add(Counter::Traced, 1);
                 if known.is_edge(stage) {
                     for (x, y) in cell.points() {
@@ -154,6 +156,11 @@ impl Corners<'_> {
         self.corners[1..].iter().chain(&self.centre).all(|&s| like(s, first))
     }
 
+    /// Whether some sample has a property.
+    fn any(&self, property: impl Fn(Sample) -> bool) -> bool {
+        self.corners.iter().chain(&self.centre).any(|&s| property(s))
+    }
+
     /// Whether all samples saw the same surface from about the same side, by the same lamps.
     fn same_surface(&self) -> bool {
         self.all(|s, first| {
@@ -203,7 +210,7 @@ impl Corners<'_> {
         let same = self.same_signature();
         let tolerance = stage.quality.tolerance * if same { 1.0 } else { 0.25 };
         let error = match self.centre {
-            Some(centre) if stage.exact_surface() && !stage.is_smooth(centre.id()) => {
+            Some(centre) if stage.rung(centre.id()) == Rung::Surface => {
                 let [a, b, c, d] = self.corners.map(|s| s.indirect());
                 let predicted = stage.display.map(centre.direct() + (a + b + c + d) * 0.25);
                 let error = (predicted - centre.display()).abs().max_element();
@@ -236,10 +243,17 @@ impl Surroundings {
         let depths = known.corners.map(|s| s.depth());
         let deepest = depths.into_iter().fold(0.0, f32::max);
         for (i, dop) in stage.dops.iter().enumerate() {
-            if self.shapes >> (i & 63) & 1 == 0 || i == own || dop.unbounded || dop.near >= deepest {
+            let field = matches!(stage.scene.shape(i), Shape::Field(_));
+            if self.shapes >> (i & 63) & 1 == 0 || i == own || dop.unbounded || dop.near >= deepest || field {
                 continue;
             }
             if dop.meets_rectangle(at, reach) && may_cover(stage, i, at, reach, &depths) {
+                return true;
+            }
+        }
+        for node in &stage.nodes {
+            let known = node.shape == own && known.any(|s| s.node() == node.index);
+            if self.shapes >> (node.shape & 63) & 1 == 1 && !known && node.may_cover(at, reach, &depths) {
                 return true;
             }
         }
@@ -278,7 +292,7 @@ impl Surroundings {
             let may = occluders(stage.scene, shafts, self.shadows[lamp], Some(own), &region);
             for (i, &bit) in stage.bits.iter().enumerate() {
                 let known_tint = bit > 0.0 && crossed & bit as u32 != 0;
-                let unbounded = matches!(stage.scene.shape(i), Shape::Plane(_));
+                let unbounded = matches!(stage.scene.shape(i), Shape::Plane(_)) || stage.endless(i);
                 if may >> (i & 63) & 1 == 1 && i != own && !known_tint && !unbounded {
                     return true;
                 }

@@ -50,6 +50,9 @@ pub struct Tile {
     pub rgb: [[f32; TILE * TILE]; 3],
     /// How each pixel was got.
     pub record: [Record; TILE * TILE],
+    /// One over the depth of each pixel's surface along the view axis, 0 where there is none; not kept
+    /// where the scene has no use for it.
+    pub nearness: [f32; TILE * TILE],
     /// Which pixels lie on an edge, by row; the last of each row and column are the neighbours'.
     pub edges: [[bool; GRID]; GRID],
     /// What sampling it took.
@@ -61,6 +64,7 @@ impl Default for Tile {
         Self {
             rgb: [[0.0; TILE * TILE]; 3],
             record: [Record(0); TILE * TILE],
+            nearness: [0.0; TILE * TILE],
             edges: [[false; GRID]; GRID],
             counters: Counters::default(),
         }

@@ -8,11 +8,12 @@ use super::block::{Block, Samples};
 use super::rays::{Packet, RayList};
 use crate::counters::{Counter, Counters};
 use crate::cull::{Region, occluders};
+use crate::features;
 use crate::math::hash::mix_x8;
-use crate::math::lanes::{F, U, V3, splat, splat_u};
+use crate::math::lanes::{F, U, V3, splat};
 use crate::render::Stage;
 use crate::scene::Channel;
-use crate::shade::{self, Codes, MAX_LAMPS, Visibility};
+use crate::shade::{self, MAX_LAMPS, Visibility};
 use crate::trace::{Hits, NONE, Rays8, nearest, surface};
 use glam::Vec3;
 
@@ -68,7 +69,8 @@ impl Boxes {
             let (lo, hi) = (fold(lo, Vec3::min), fold(hi, Vec3::max));
             // Shadow rays start at the points as put back onto the surface, a clearance off.
             let reach = lo.abs().max(hi.abs()).length() + stage.scene.camera.position.length();
-            let region = Region::cuboid(lo, hi, 4e-6 * reach);
+            let off = if stage.scene.fields.is_empty() { 0.0 } else { 4.0 * stage.quality.epsilon };
+            let region = Region::cuboid(lo, hi, 4e-6 * reach + off);
             for (mask, shafts) in masks.iter_mut().zip(&stage.shafts) {
                 *mask |= occluders(stage.scene, shafts, !*mask, Some(shape as usize), &region);
             }
@@ -129,7 +131,9 @@ pub type Position = (f32, f32);
 fn step(stage: &Stage, scratch: &mut Scratch, candidates: u64, level: u32) {
     let Scratch { samples, counters, rays, next, hits, occluders: boxes, .. } = scratch;
     hits.clear();
-    hits.extend(rays.packets.iter().map(|p| nearest(stage.scene, &p.rays, candidates, counters)));
+    hits.extend(
+        rays.packets.iter().map(|p| nearest(stage.scene, &stage.quality, &p.rays, candidates, counters)),
+    );
 
     let mut shadows = [u64::MAX; MAX_LAMPS];
     if stage.quality.cull && hits.len() >= CULL_FROM {
@@ -141,13 +145,16 @@ fn step(stage: &Stage, scratch: &mut Scratch, candidates: u64, level: u32) {
         shadows = boxes.candidates(stage);
     }
 
+    let mut found = Found::default();
     for (k, hit) in hits.iter().enumerate() {
         let packet = &rays.packets[k];
-        let found = shade_packet(stage, packet, hit, level, &shadows, counters);
+        shade_packet(stage, packet, hit, level, &shadows, &mut found, counters);
         let owners = rays.owners(k);
         let hash = found.hash(stage);
         if level == 0 {
-            samples.0.push(found.block(stage, packet, hash));
+            found.block.surface = hash;
+            found.block.direct = found.block.colour;
+            samples.0.push(found.block);
         } else {
             for (lane, &owner) in owners.iter().enumerate() {
                 // Two hits deep for all, three for what is seen through glass.
@@ -156,7 +163,7 @@ fn step(stage: &Stage, scratch: &mut Scratch, candidates: u64, level: u32) {
                 let glass = id >= 0.0 && stage.bits.get(shape).is_some_and(|&bit| bit > 0.0);
                 let deep = level == 1 || (level == 2 && glass);
                 let hash = deep.then_some(hash.as_array()[lane]);
-                samples.add(owner as usize, found.light.lane(lane), hash);
+                samples.add(owner as usize, found.block.colour.lane(lane), hash);
             }
         }
         if level < stage.quality.depth {
@@ -165,25 +172,16 @@ fn step(stage: &Stage, scratch: &mut Scratch, candidates: u64, level: u32) {
     }
 }
 
-/// What a packet's rays found: light for their samples, and where rays go on from.
+/// What a packet's rays found.
+#[derive(Default)]
 struct Found {
-    /// Weighted light, all of it.
-    light: V3,
-    /// Weighted light on the surface, before its albedo.
-    irradiance: V3,
-    albedo: V3,
-    id: F,
-    key: F,
-    depth: F,
-    point: V3,
-    normal: V3,
-    codes: Codes,
-    signature: F,
-    spread: F,
-    mirrored: Rays8,
-    mirrored_weight: V3,
-    refracted: Rays8,
-    refracted_weight: V3,
+    /// The hits, and their weighted light, as samples of their own; `surface` and `direct` are left
+    /// open, and `signature` holds what was seen of shining rectangles.
+    block: Block,
+    /// Which part of its field each lane has hit.
+    part: F,
+    /// Mirrored and refracted rays, which go on from the hits.
+    onward: [Packet; 2],
 }
 
 /// Light that the rays of a packet find at their hits, and the rays that go on from there.
@@ -194,8 +192,9 @@ fn shade_packet(
     hit: &Hits,
     level: u32,
     shadows: &[u64; MAX_LAMPS],
+    found: &mut Found,
     counters: &mut Counters,
-) -> Found {
+) {
     let scene = stage.scene;
     let Packet { rays, spread, .. } = packet;
     let spread = *spread;
@@ -209,6 +208,13 @@ fn shade_packet(
         let (through, scattered) = shade::fog(fog, rays, hit.t);
         light += weight * scattered;
         weight = weight * through;
+    }
+    if features::BEAMS && level > 0 {
+        // What the eye sees of them straight is added to the finished pixels.
+        counters.add(Counter::Beams, 8 * scene.beams.len());
+        for beam in &scene.beams {
+            light += packet.weight * shade::beam(beam, rays, spread, hit.t);
+        }
     }
     if level > 0 && !scene.emitters.is_empty() {
         counters.add(Counter::EmitterTests, 8 * scene.emitters.len());
@@ -234,91 +240,70 @@ fn shade_packet(
         light += weight * shade::ambient(stage, rays.direction) * blur;
         weight = weight * (F::ONE - blur);
     }
-    let mut found = Found {
-        light,
-        irradiance: zero,
-        albedo: zero,
-        id,
-        key: id,
-        depth: hit.t,
-        point: zero,
-        normal: zero,
-        codes: [F::ZERO; MAX_LAMPS],
-        signature,
-        spread: F::ZERO,
-        mirrored: *rays,
-        mirrored_weight: zero,
-        refracted: *rays,
-        refracted_weight: zero,
-    };
+    let Found { block, part, onward } = found;
+    *part = F::ZERO;
+    *block = Block::default();
+    block.colour = light;
+    block.signature = signature.to_bits();
+    block.id = id;
+    block.depth = hit.t * rays.direction.dot(V3::splat(stage.forward()));
+    onward[0].weight = zero;
+    onward[1].weight = zero;
     if !solid.any() {
-        return found;
+        return;
     }
 
     let t = solid.select(hit.t, F::ZERO);
-    let s = surface(scene, rays, t, solid.select(hit.id, splat(NONE)), spread);
+    let s = surface(scene, &stage.quality, rays, t, solid.select(hit.id, splat(NONE)), spread);
     s.count(counters);
     let view = -rays.direction;
     let trace = Visibility::Trace(shadows);
-    let lit = shade::direct(stage, &s, view, solid, trace, &mut found.codes, counters);
+    let lit = shade::direct(stage, &s, view, solid, trace, &mut block.codes, counters);
     let split = shade::split(scene.shading, &s, rays.direction);
-    let local = shade::local(stage, &s, &split, lit);
+    let local = shade::local(stage, &s, &split, lit, solid, counters);
     let seen = weight & solid;
-    found.albedo = s.colour(Channel::Colour);
-    found.irradiance = seen * local.irradiance;
-    found.light += found.irradiance * found.albedo + seen * local.rest;
-    found.point = s.point;
-    found.normal = s.normal;
-    found.key = solid.select(s.key, id);
-    counters.add(Counter::SmoothFacets, found.key.simd_ne(id).to_bitmask().count_ones() as usize);
+    block.albedo = s.colour(Channel::Colour);
+    block.irradiance = seen * local.irradiance;
+    block.colour += block.irradiance * block.albedo + seen * local.rest;
+    block.point = s.point;
+    block.normal = s.normal;
+    (block.node, *part) = (s.node, s.part);
+    if features::SMOOTH {
+        let facets = id.simd_ge(splat(4.0 * scene.shape_count() as f32)) & s.part.simd_ne(F::ZERO);
+        counters.add(Counter::SmoothFacets, facets.to_bitmask().count_ones() as usize);
+    }
 
     let facing = V3::select(s.inside, -s.outward, s.outward);
     let offset = facing * s.clearance;
     let m = s.value(Channel::Roughness);
-    found.spread = spread + m * m * splat(6.0);
-    found.mirrored = Rays8 { origin: s.point + offset, direction: split.mirrored };
-    found.mirrored_weight = seen * split.reflectance * s.value(Channel::Reflection);
-    let entering = seen & !split.total;
+    let spread = spread + m * m * splat(6.0);
     let one = V3::splat(Vec3::ONE);
+    let reflected = seen * split.reflectance * s.value(Channel::Reflection);
     let passed = (one - split.reflectance) * s.value(Channel::Transparency);
-    found.refracted = Rays8 { origin: s.point - offset, direction: split.refracted };
-    found.refracted_weight = entering * passed * s.colour(Channel::Tint);
+    let refracted = (seen & !split.total) * passed * s.colour(Channel::Tint);
+    onward[0].rays = Rays8 { origin: s.point + offset, direction: split.mirrored };
+    onward[0].weight = reflected;
+    onward[0].spread = spread;
+    onward[1].rays = Rays8 { origin: s.point - offset, direction: split.refracted };
+    onward[1].weight = refracted;
+    onward[1].spread = spread;
     if level == stage.quality.depth {
         // Where the chain is cut, the mean light in place of what the rays would find.
-        let mirrored = found.mirrored_weight * shade::ambient(stage, split.mirrored);
-        let refracted = found.refracted_weight * shade::ambient(stage, split.refracted);
+        let mirrored = reflected * shade::ambient(stage, split.mirrored);
+        let refracted = refracted * shade::ambient(stage, split.refracted);
         // Lanes without such a ray have no direction either.
-        found.light += (mirrored & solid) + (refracted & (solid & !split.total));
+        block.colour += (mirrored & solid) + (refracted & (solid & !split.total));
     }
-    found
 }
 
 impl Found {
     /// Hash of what each lane saw.
     fn hash(&self, stage: &Stage) -> U {
-        let mut h = mix_x8(self.key.to_bits(), self.signature.to_bits());
-        for code in &self.codes[..stage.lamps.len().min(MAX_LAMPS)] {
+        let mut h = mix_x8(self.block.id.to_bits() ^ self.part.to_bits(), self.block.signature);
+        for code in &self.block.codes[..stage.lamps.len().min(MAX_LAMPS)] {
             h = mix_x8(h, code.to_bits());
         }
         h
-    }
-
-    /// The samples whose first hits these are.
-    fn block(&self, stage: &Stage, packet: &Packet, hash: U) -> Block {
-        Block {
-            colour: self.light,
-            direct: self.light,
-            irradiance: self.irradiance,
-            albedo: self.albedo,
-            display: V3::ZERO,
-            surface: hash,
-            signature: splat_u(0),
-            id: self.id,
-            depth: self.depth * packet.rays.direction.dot(V3::splat(stage.forward())),
-            point: self.point,
-            normal: self.normal,
-            codes: self.codes,
-        }
     }
 
     /// Appends the rays that go on, if what they may add is worth it.
@@ -326,15 +311,12 @@ impl Found {
     fn spawn(&self, stage: &Stage, owners: &[u32], next: &mut RayList, counters: &mut Counters) {
         let cutoff = splat(stage.quality.cutoff / stage.scene.grade.exposure);
         let worth = |w: V3| w.x.fast_max(w.y).fast_max(w.z).simd_gt(cutoff).to_bitmask();
-        let (mirrors, enters) = (worth(self.mirrored_weight), worth(self.refracted_weight));
         for (lane, &sample) in owners.iter().enumerate() {
-            if mirrors >> lane & 1 == 1 {
-                counters.add(Counter::ReflectedRays, 1);
-                next.push(lane, &self.mirrored, self.mirrored_weight, self.spread, sample);
-            }
-            if enters >> lane & 1 == 1 {
-                counters.add(Counter::RefractedRays, 1);
-                next.push(lane, &self.refracted, self.refracted_weight, self.spread, sample);
+            for (rays, counter) in self.onward.iter().zip([Counter::ReflectedRays, Counter::RefractedRays]) {
+                if worth(rays.weight) >> lane & 1 == 1 {
+                    counters.add(counter, 1);
+                    next.push(rays, lane, sample);
+                }
             }
         }
     }

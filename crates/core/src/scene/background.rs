@@ -6,10 +6,10 @@
 
 use glam::Vec3;
 
-/// One stop of the sky gradient.
+/// One stop of a gradient; the sky's runs over the height of the direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stop {
-    /// The y component of the unit direction, -1 to 1, ascending from stop to stop.
+    /// Where: for the sky the y component of the unit direction, -1 to 1; ascending from stop to stop.
     pub y: f32,
     /// Linear RGB.
     pub colour: Vec3,

@@ -1,7 +1,21 @@
 //! What a shape is made of.
 
-use super::Texture;
+use super::{Stop, Texture};
 use glam::Vec3;
+
+/// Fire that spreads in a body: light over the distance from where it began, as a share of a
+/// radius.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fire {
+    /// Where it began, world.
+    pub centre: Vec3,
+    /// How far it has come, world units, over 0.
+    pub radius: f32,
+    /// Factor on the colours.
+    pub strength: f32,
+    /// Light given off, from 0 in the middle to 1 at the radius.
+    pub stops: &'static [Stop],
+}
 
 /// Optical properties of a surface and of the body under it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,6 +43,8 @@ pub struct Material {
     pub tint: Vec3,
     /// Light given off, linear RGB.
     pub emission: Vec3,
+    /// Light given off in place of `emission` where fire has come.
+    pub fire: Option<Fire>,
     /// Factor on a lamp's light that crosses the whole body, linear RGB.
     pub shadow: Vec3,
     /// How albedo and normal vary over the surface.
@@ -37,21 +53,7 @@ pub struct Material {
 
 impl Default for Material {
     fn default() -> Self {
-        Self {
-            colour: Vec3::ZERO,
-            diffuse: 1.0,
-            specular: Vec3::ZERO,
-            exponent: 1.0,
-            f0: Vec3::ZERO,
-            roughness: 0.0,
-            reflection: 0.0,
-            transparency: 0.0,
-            ior: 1.0,
-            tint: Vec3::ONE,
-            emission: Vec3::ZERO,
-            shadow: Vec3::ZERO,
-            texture: Texture::NONE,
-        }
+        Self::DEFAULT
     }
 }
 
@@ -78,6 +80,24 @@ pub enum Channel {
 }
 
 impl Material {
+    /// A black, matt, opaque body.
+    pub const DEFAULT: Self = Self {
+        colour: Vec3::ZERO,
+        diffuse: 1.0,
+        specular: Vec3::ZERO,
+        exponent: 1.0,
+        f0: Vec3::ZERO,
+        roughness: 0.0,
+        reflection: 0.0,
+        transparency: 0.0,
+        ior: 1.0,
+        tint: Vec3::ONE,
+        emission: Vec3::ZERO,
+        fire: None,
+        shadow: Vec3::ZERO,
+        texture: Texture::NONE,
+    };
+
     /// Number of values in [`Material::channels`].
     pub const CHANNELS: usize = 25;
 

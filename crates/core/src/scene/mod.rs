@@ -2,11 +2,13 @@
 //!
 //! A scene is made anew for each frame by the show's pure functions of time. Shapes of all kinds
 //! share one index space, [`Scene::shape_count`] long: spheres first, then planes, cylinders,
-//! cones and triangles, each in list order. Facets of
-//! meshes follow. Right-handed, y up, world units.
+//! cones, triangles and fields, each in list order. Facets of meshes follow. Right-handed, y up,
+//! world units.
 
 mod background;
+mod beam;
 mod camera;
+mod field;
 mod light;
 mod material;
 mod shapes;
@@ -14,9 +16,11 @@ mod texture;
 mod track;
 
 pub use background::{Background, Disc, Glow, Stop};
+pub use beam::Beam;
 pub use camera::Camera;
+pub use field::{Field, Form, Join, Node};
 pub use light::{Emitter, Light, LightKind};
-pub use material::{Channel, Material};
+pub use material::{Channel, Fire, Material};
 pub use shapes::{Cone, Cylinder, Plane, Sphere, Triangle};
 pub use texture::{Pattern, Texture};
 pub use track::{Ease, Key, track};
@@ -72,18 +76,23 @@ pub struct Grade {
     pub grain: f32,
 }
 
+impl Grade {
+    /// Nothing but the dither.
+    pub const DEFAULT: Self = Self {
+        exposure: 1.0,
+        bloom_threshold: 1.0,
+        bloom: 0.0,
+        lift: Vec3::ZERO,
+        gamma: Vec3::ONE,
+        gain: Vec3::ONE,
+        vignette: 0.0,
+        grain: 0.5 / 255.0,
+    };
+}
+
 impl Default for Grade {
     fn default() -> Self {
-        Self {
-            exposure: 1.0,
-            bloom_threshold: 1.0,
-            bloom: 0.0,
-            lift: Vec3::ZERO,
-            gamma: Vec3::ONE,
-            gain: Vec3::ONE,
-            vignette: 0.0,
-            grain: 0.5 / 255.0,
-        }
+        Self::DEFAULT
     }
 }
 
@@ -104,6 +113,11 @@ pub struct Scene {
     pub cones: Vec<Cone>,
     /// Single triangles.
     pub triangles: Vec<Triangle>,
+    /// Bodies as signed distance fields.
+    pub fields: Vec<Field>,
+    /// Distance up to which fields take ambient light from what is near them, world units; 0 for
+    /// not at all.
+    pub occlusion: f32,
     /// Triangle meshes, placed.
     pub meshes: Assembly,
     /// What shapes are made of; shapes hold indices into this list.
@@ -112,6 +126,8 @@ pub struct Scene {
     pub lights: Vec<Light>,
     /// Rectangles that shine; seen in mirrors and through glass.
     pub emitters: Vec<Emitter>,
+    /// Beams of light in the haze; they light nothing themselves.
+    pub beams: Vec<Beam>,
     /// The reflection model for direct light.
     pub shading: Shading,
     /// Light from everywhere below (normal down) and above (normal up), mixed by the normal's y.
@@ -132,5 +148,6 @@ impl Scene {
             + self.cylinders.len()
             + self.cones.len()
             + self.triangles.len()
+            + self.fields.len()
     }
 }

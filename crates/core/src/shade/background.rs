@@ -3,7 +3,7 @@
 use crate::math::lanes::{F, V3, min, splat};
 use crate::math::lanes_fn::exp;
 use crate::scene::{Background, Emitter};
-use crate::trace::{NONE, Rays8};
+use crate::trace::{NONE, Rays8, ramp};
 
 /// Share of the filter [x - w/2, x + w/2] that lies in [-half, half]: a box seen through a box.
 ///
@@ -24,17 +24,7 @@ fn covered(x: F, half: F, w: F) -> F {
 #[inline(never)]
 pub fn background(sky: &Background, rays: &Rays8, spread: F) -> (V3, F) {
     let d = rays.direction;
-    let mut colour = V3::splat(glam::Vec3::ZERO);
-    for (i, stop) in sky.stops.iter().enumerate() {
-        let at = V3::splat(stop.colour);
-        if i == 0 {
-            colour = at;
-            continue;
-        }
-        let before = &sky.stops[i - 1];
-        let x = (d.y - splat(before.y)) * splat(1.0 / (stop.y - before.y));
-        colour += (at - V3::splat(before.colour)) * x.fast_max(F::ZERO).fast_min(F::ONE);
-    }
+    let mut colour = ramp(&sky.stops, d.y);
     for glow in &sky.glows {
         let x = (d.dot(V3::splat(glow.direction)) - F::ONE) * splat(glow.sharpness);
         colour += V3::splat(glow.colour) * exp(x);

@@ -11,8 +11,8 @@ use crate::features;
 use crate::math::lanes::{F, V3, splat};
 use crate::math::lanes_fn::{exp, pow};
 use crate::render::Stage;
-use crate::scene::{Channel, Shading};
-use crate::trace::{BLOCKED, Rays8, Surface, occlusion};
+use crate::scene::{Channel, Scene, Shading};
+use crate::trace::{BLOCKED, Rays8, Surface, ambient_share, occlusion};
 use glam::Vec3;
 
 /// Lamps that may cast shadows; those after them light without.
@@ -56,8 +56,19 @@ pub fn ambient(stage: &Stage, direction: V3) -> V3 {
 /// lamps; what a mirror takes away is missing from the diffuse part. Under GGX that is all that
 /// the microfacets reflect: the share that isn't traced is the mean light from there.
 #[inline(never)]
-pub fn local(stage: &Stage, s: &Surface, split: &Split, lit: Lit) -> Local {
-    let ambient = ambient(stage, s.normal);
+pub fn local(
+    stage: &Stage,
+    s: &Surface,
+    split: &Split,
+    lit: Lit,
+    active: F,
+    counters: &mut Counters,
+) -> Local {
+    let mut ambient = ambient(stage, s.normal);
+    if features::FIELD_OCCLUSION && stage.scene.occlusion > 0.0 {
+        let Scene { fields, occlusion, .. } = stage.scene;
+        ambient = ambient * ambient_share(fields, *occlusion, s.point, s.normal, active, counters);
+    }
     let mut mirrored = split.reflectance * s.value(Channel::Reflection);
     let mut rest = lit.highlight + s.colour(Channel::Emission);
     if features::GGX && stage.scene.shading == Shading::Ggx {
@@ -140,7 +151,15 @@ pub fn direct(
             if (candidates[k] != 0 || !stage.scene.meshes.is_empty()) && wanted.any() {
                 counters.add(Counter::ShadowRays, wanted.to_bitmask().count_ones() as usize);
                 let rays = Rays8 { origin: start, direction: to_lamp };
-                let found = occlusion(stage.scene, &stage.bits, &rays, wanted, candidates[k], counters);
+                let found = occlusion(
+                    stage.scene,
+                    &stage.quality,
+                    &stage.bits,
+                    &rays,
+                    wanted,
+                    candidates[k],
+                    counters,
+                );
                 *code = found & wanted;
             }
         }

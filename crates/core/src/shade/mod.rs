@@ -1,6 +1,7 @@
 //! Light at surfaces and along rays: direct light, background, fog, mirrors and glass.
 
 mod background;
+mod beam;
 mod direct;
 mod fog;
 mod fresnel;
@@ -8,6 +9,7 @@ mod ggx;
 mod lamps;
 
 pub use background::{background, emitters};
+pub use beam::beam;
 pub use direct::{Codes, Lit, Local, MAX_LAMPS, Visibility, ambient, direct, local};
 pub use fog::fog;
 pub use fresnel::{Split, schlick, split};

@@ -3,6 +3,7 @@
 use super::Rays8;
 use crate::counters::Counters;
 use crate::math::lanes::{F, TRUE, splat};
+use crate::quality::Quality;
 use crate::scene::Scene;
 
 /// Hit id of a lane that hit nothing.
@@ -23,7 +24,13 @@ pub struct Hits {
 /// Bit i of `candidates` stands for the shapes whose index is i modulo 64: leaving out a bit must
 /// only leave out shapes that no lane can hit.
 #[inline(never)]
-pub fn nearest(scene: &Scene, rays: &Rays8, candidates: u64, counters: &mut Counters) -> Hits {
+pub fn nearest(
+    scene: &Scene,
+    quality: &Quality,
+    rays: &Rays8,
+    candidates: u64,
+    counters: &mut Counters,
+) -> Hits {
     let mut best = Hits { t: splat(f32::INFINITY), id: splat(NONE) };
     for index in 0..scene.shape_count() {
         if candidates >> (index & 63) & 1 == 0 {
@@ -31,7 +38,7 @@ pub fn nearest(scene: &Scene, rays: &Rays8, candidates: u64, counters: &mut Coun
         }
         let shape = scene.shape(index);
         counters.add(shape.counter(), 8);
-        let (t, part) = shape.span(rays).first();
+        let (t, part) = shape.span(rays, best.t, quality, counters).first();
         let closer = t.simd_gt(F::ZERO) & t.simd_lt(best.t);
         best.t = closer.select(t, best.t);
         best.id = closer.select(splat(index as f32 * 4.0) + part, best.id);

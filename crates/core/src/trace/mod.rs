@@ -3,9 +3,11 @@
 //! A ray's result never depends on which packet it rides in: every operation acts lane by lane.
 //! Robust forms and their sources stand with each kernel.
 
+mod field;
 mod hit;
 mod occlusion;
 mod plane;
+mod ramp;
 mod round;
 mod sphere;
 mod surface;
@@ -17,25 +19,28 @@ pub(crate) mod check;
 #[cfg(test)]
 mod tests;
 
+pub use field::{ambient_share, distance, field};
 pub use hit::{Hits, NONE, nearest};
 pub use occlusion::{BLOCKED, occlusion};
 pub use plane::plane;
+pub use ramp::ramp;
 pub use round::{cone, cylinder};
 pub use sphere::sphere;
 pub use surface::{Surface, surface};
 pub use texture::relief_within;
 pub use triangle::{Aim, Crossing, triangle};
 
-use crate::counters::Counter;
+use crate::counters::{Counter, Counters};
 use crate::features;
 use crate::math::lanes::{F, V3, splat};
 use crate::mesh::Instance;
-use crate::scene::{Cone, Cylinder, Plane, Scene, Sphere, Triangle};
+use crate::quality::Quality;
+use crate::scene::{Cone, Cylinder, Field, Plane, Scene, Sphere, Triangle};
 
 /// Eight rays. Directions need not be unit vectors; distances along a ray are in lengths of its
 /// direction. Squares of origins and directions must not leave the range of f32; rays that break
 /// this may hit anything or nothing, but never at NaN.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 pub struct Rays8 {
     /// Origins, world.
     pub origin: V3,
@@ -81,6 +86,30 @@ impl Span {
 }
 
 impl Rays8 {
+    /// Distances at which the rays enter and leave a box, at least 0 and at most `end`; a miss has
+    /// them in the wrong order.
+    ///
+    /// The slab's near and far planes are chosen by the sign of 1/d, which knows -0 too, and the
+    /// bounds only move where a comparison holds, so that 0 · inf = NaN, on a face, changes nothing.
+    #[inline(never)]
+    pub fn in_box(&self, lo: glam::Vec3, hi: glam::Vec3, end: F) -> (F, F) {
+        let (lo, hi) = (V3::splat(lo), V3::splat(hi));
+        let (mut enter, mut exit) = (F::ZERO, end);
+        for (o, d, lo, hi) in [
+            (self.origin.x, self.direction.x, lo.x, hi.x),
+            (self.origin.y, self.direction.y, lo.y, hi.y),
+            (self.origin.z, self.direction.z, lo.z, hi.z),
+        ] {
+            let inv = F::ONE / d;
+            let forward = inv.simd_gt(F::ZERO);
+            let (a, b) = ((lo - o) * inv, (hi - o) * inv);
+            let (near, far) = (forward.select(a, b), forward.select(b, a));
+            enter = near.simd_gt(enter).select(near, enter);
+            exit = exit.simd_gt(far).select(far, exit);
+        }
+        (enter, exit)
+    }
+
     /// Whether some ray's line comes near the ball: a cheap test before an expensive one, which
     /// errs to true by rounding.
     #[inline(always)]
@@ -102,6 +131,7 @@ pub enum Shape<'a> {
     Cylinder(&'a Cylinder),
     Cone(&'a Cone),
     Triangle(&'a Triangle),
+    Field(&'a Field),
     Facet(&'a Instance, usize),
 }
 
@@ -125,10 +155,14 @@ impl Scene {
             return Shape::Cone(s);
         }
         i -= self.cones.len();
-        if !features::MESHES || i < self.triangles.len() {
-            return Shape::Triangle(&self.triangles[i]);
+        if let Some(s) = self.triangles.get(i) {
+            return Shape::Triangle(s);
         }
-        let (instance, facet) = self.meshes.facet(i - self.triangles.len());
+        i -= self.triangles.len();
+        if !features::MESHES || i < self.fields.len() {
+            return Shape::Field(&self.fields[i]);
+        }
+        let (instance, facet) = self.meshes.facet(i - self.fields.len());
         Shape::Facet(instance, facet)
     }
 }
@@ -142,11 +176,12 @@ impl Shape<'_> {
             Shape::Cylinder(_) => Counter::CylinderTests,
             Shape::Cone(_) => Counter::ConeTests,
             Shape::Triangle(_) => Counter::TriangleTests,
+            Shape::Field(_) => Counter::FieldTests,
             Shape::Facet(..) => Counter::FacetTests,
         }
     }
 
-    /// Index of the shape's material.
+    /// Index of the shape's material; of a field's first one.
     pub fn material(&self) -> usize {
         match self {
             Shape::Sphere(s) => s.material,
@@ -154,19 +189,22 @@ impl Shape<'_> {
             Shape::Cylinder(s) => s.material,
             Shape::Cone(s) => s.material,
             Shape::Triangle(s) => s.material,
+            Shape::Field(s) => s.nodes.first().map_or(0, |node| node.material),
             Shape::Facet(s, _) => s.material,
         }
     }
 
-    /// Where `rays` cross the shape.
+    /// Where `rays` cross the shape. What lies past `limit` along a ray may be missing.
     #[inline(never)]
-    pub fn span(&self, rays: &Rays8) -> Span {
+    pub fn span(&self, rays: &Rays8, limit: F, quality: &Quality, counters: &mut Counters) -> Span {
         match self {
             Shape::Sphere(s) => sphere(rays, s),
             Shape::Plane(s) => plane(rays, s),
             Shape::Cylinder(s) => cylinder(rays, s),
             Shape::Cone(s) => cone(rays, s),
             Shape::Triangle(s) => triangle(rays, s),
+            Shape::Field(s) if features::FIELDS => field(rays, s, limit, quality, counters),
+            Shape::Field(_) => Span::MISS,
             Shape::Facet(s, facet) => s.span(*facet, rays),
         }
     }

@@ -3,6 +3,7 @@
 use super::{Hits, NONE, Rays8};
 use crate::counters::Counters;
 use crate::math::lanes::{F, splat};
+use crate::quality::Quality;
 use crate::scene::Scene;
 
 /// Visibility code of a lamp that an opaque shape hides.
@@ -19,6 +20,7 @@ const END: f32 = 1.0 - 4.0 / 16_777_216.0;
 #[inline(never)]
 pub fn occlusion(
     scene: &Scene,
+    quality: &Quality,
     bits: &[f32],
     rays: &Rays8,
     wanted: F,
@@ -34,7 +36,7 @@ pub fn occlusion(
         }
         let shape = scene.shape(index);
         counters.add(shape.counter(), 8);
-        let span = shape.span(rays);
+        let span = shape.span(rays, F::ONE, quality, counters);
         if bit > 0.0 {
             let crossed = span.exit.simd_gt(zero) & span.enter.simd_lt(end);
             code += crossed & splat(bit);

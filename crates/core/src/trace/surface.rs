@@ -5,12 +5,15 @@
 //! units in the last place of the largest coordinate involved, and of the point relative to where
 //! the shape is measured from (Wächter and Binder, Ray Tracing Gems ch. 6; PBRT 4th ed. §6.8.6).
 
+use super::field::{Nodes, locate as on_field};
+use super::ramp::ramp;
 use super::texture::texture;
 use super::{Rays8, Shape};
 use crate::counters::{Counter, Counters};
 use crate::features;
 use crate::math::lanes::{F, V3, splat};
-use crate::scene::{Channel, Material, Scene, Sphere};
+use crate::quality::Quality;
+use crate::scene::{Channel, Field, Join, Material, Scene, Sphere};
 
 /// Surfaces of a packet. Lanes without a hit hold finite nonsense.
 pub struct Surface {
@@ -22,13 +25,15 @@ pub struct Surface {
     pub outward: V3,
     /// Mask of rays that met the surface from behind: from inside a body.
     pub inside: F,
-    /// What was hit as the sampler should tell it apart: the id, but one for all facets of a mesh
-    /// that stands for something curved.
-    pub key: F,
     /// Weights of the second and third corner of a mesh's triangle, else 0.
     pub uv: [F; 2],
     /// How far off the surface a secondary ray must start, world units.
     pub clearance: F,
+    /// Node of a field that has most of the surface; 0 on other shapes.
+    pub node: F,
+    /// Which of a field's sharply joined parts that is; on a mesh that stands for something curved,
+    /// the bits in which the hit's id differs from that of its first facet; 0 on other shapes.
+    pub part: F,
     /// Material channels, see [`Channel`].
     pub material: [F; Material::CHANNELS],
 }
@@ -107,6 +112,7 @@ fn locate(scene: &Scene, shape: Shape, part: u32, p: V3) -> Located {
         Shape::Facet(..) => onto_plane(p, glam::Vec3::ZERO, p),
         Shape::Cylinder(s) => round(p, s.base, s.axis, (s.radius, 0.0), [0.0, s.length], part),
         Shape::Cone(s) => round(p, s.apex, s.axis, (0.0, s.slope), s.range, part),
+        Shape::Field(_) => onto_plane(p, glam::Vec3::ZERO, V3::ZERO),
     }
 }
 
@@ -144,7 +150,7 @@ fn round(
 /// Locates the surfaces that `rays` hit at distances `t`; ids as in [`super::Hits`]. `spread` is
 /// the width of the rays' footprints per unit of distance, which textures are filtered by.
 #[inline(never)]
-pub fn surface(scene: &Scene, rays: &Rays8, t: F, id: F, spread: F) -> Surface {
+pub fn surface(scene: &Scene, quality: &Quality, rays: &Rays8, t: F, id: F, spread: F) -> Surface {
     let zero = V3::splat(glam::Vec3::ZERO);
     let up = V3::splat(glam::Vec3::Y);
     let mut s = Surface {
@@ -152,9 +158,10 @@ pub fn surface(scene: &Scene, rays: &Rays8, t: F, id: F, spread: F) -> Surface {
         normal: up,
         outward: up,
         inside: F::ZERO,
-        key: id,
         uv: [F::ZERO; 2],
         clearance: F::ZERO,
+        node: F::ZERO,
+        part: F::ZERO,
         material: [F::ZERO; Material::CHANNELS],
     };
     let p = rays.origin + rays.direction * t;
@@ -167,6 +174,18 @@ pub fn surface(scene: &Scene, rays: &Rays8, t: F, id: F, spread: F) -> Surface {
         todo &= !mask.to_bitmask();
         let (index, part) = (lane_id as usize >> 2, lane_id as u32 & 3);
         let shape = scene.shape(index);
+        if let (true, Shape::Field(field)) = (features::FIELDS, shape) {
+            let found = on_field(field, p, t * spread, rays.direction);
+            s.point = V3::select(mask, found.point, s.point);
+            s.outward = V3::select(mask, found.outward, s.outward);
+            s.normal = V3::select(mask, found.outward, s.normal);
+            // Twice what counts as a hit, and the rounding of the point.
+            let off = splat(2.5 * quality.epsilon) + max_abs(found.point) * splat(4.0 / 8_388_608.0);
+            s.clearance = mask.select(off, s.clearance);
+            mix(scene, field, &found.shares, mask, &mut s);
+            burn(&scene.materials[shape.material()], mask, &mut s);
+            continue;
+        }
         let (point, outward, normal, scale) = match shape {
             Shape::Facet(instance, _) if features::MESHES => {
                 let [first, end] = instance.ids(base);
@@ -177,7 +196,7 @@ pub fn surface(scene: &Scene, rays: &Rays8, t: F, id: F, spread: F) -> Surface {
                     *uv = mask.select(of_facets, *uv);
                 }
                 if instance.mesh().is_smooth() {
-                    s.key = mask.select(splat(first), s.key);
+                    s.part = mask.select(id ^ splat(first), s.part);
                 }
                 (facets.point, facets.outward, facets.normal, facets.reach)
             }
@@ -188,13 +207,50 @@ pub fn surface(scene: &Scene, rays: &Rays8, t: F, id: F, spread: F) -> Surface {
         s.normal = V3::select(mask, normal, s.normal);
         let scale = scale.fast_max(max_abs(point)).fast_max(splat(1e-30));
         s.clearance = mask.select(scale * splat(4.0 / 8_388_608.0), s.clearance);
-        let channels = scene.materials[shape.material()].channels();
-        for (lane, &value) in s.material.iter_mut().zip(&channels) {
+        let material = &scene.materials[shape.material()];
+        for (lane, value) in s.material.iter_mut().zip(material.channels()) {
             *lane = mask.select(splat(value), *lane);
         }
+        burn(material, mask, &mut s);
     }
     s.inside = s.outward.dot(rays.direction).simd_gt(F::ZERO);
     s.normal = V3::select(s.inside, -s.normal, s.normal);
     texture(&mut s, rays.direction, t * spread);
     s
+}
+
+/// Mixes the materials of a field's nodes, and tells which has most.
+#[inline(never)]
+fn mix(scene: &Scene, field: &Field, shares: &Nodes, mask: F, s: &mut Surface) {
+    let mut most = F::ZERO;
+    let mut sum = [F::ZERO; Material::CHANNELS];
+    let mut part = 0.0;
+    for (i, (node, &share)) in field.nodes.iter().zip(shares).enumerate() {
+        if i > 0 && node.blend == 0.0 && node.join != Join::Sum {
+            part += 1.0;
+        }
+        for (lane, value) in sum.iter_mut().zip(scene.materials[node.material].channels()) {
+            *lane += share * splat(value);
+        }
+        let more = mask & share.simd_gt(most);
+        most = more.select(share, most);
+        s.node = more.select(splat(i as f32), s.node);
+        s.part = more.select(splat(part), s.part);
+    }
+    for (lane, value) in s.material.iter_mut().zip(sum) {
+        *lane = mask.select(value, *lane);
+    }
+}
+
+/// Light of fire that has come to the points.
+fn burn(material: &Material, mask: F, s: &mut Surface) {
+    if let Some(fire) = &material.fire {
+        let away = (s.point - V3::splat(fire.centre)).length() * splat(1.0 / fire.radius);
+        let light = ramp(fire.stops, away) * splat(fire.strength);
+        for (lane, value) in
+            s.material[Channel::Emission as usize..].iter_mut().zip([light.x, light.y, light.z])
+        {
+            *lane = mask.select(value, *lane);
+        }
+    }
 }

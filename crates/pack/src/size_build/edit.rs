@@ -87,6 +87,13 @@ impl Source {
         Ok(())
     }
 
+    /// Replaces a file, which must be there.
+    pub fn replace_file(&mut self, file: &str, new: &str, edit: &'static str) -> Result<(), Error> {
+        self.text(file).ok_or_else(|| self.unknown(edit))?;
+        self.files.insert(PathBuf::from(file), new.into());
+        Ok(())
+    }
+
     /// Keeps those lines of a file for which `keep` says so.
     pub fn keep_lines(
         &mut self,
@@ -104,6 +111,15 @@ impl Source {
     /// The error that says that the source isn't as expected.
     pub fn unknown(&self, edit: &'static str) -> Error {
         Error::Edit { package: self.package.clone(), edit }
+    }
+
+    /// Replaces all of a file from the start of `from`, which must occur once.
+    pub fn cut_from(&mut self, file: &str, from: &str, edit: &'static str) -> Result<(), Error> {
+        let kept =
+            self.text(file).and_then(|text| split_once(text, from)).map(|(before, _)| before.to_owned());
+        let kept = kept.ok_or_else(|| self.unknown(edit))?;
+        self.files.insert(PathBuf::from(file), kept.into_bytes());
+        Ok(())
     }
 
     /// Writes the crate to `directory`. What is the same there stays untouched, so that cargo

@@ -32,8 +32,10 @@ pub fn prepare(root: &Path, output: &Path, toolchain: &Toolchain) -> Result<Path
     };
     let mut minifb = read("minifb")?;
     let mut x11_dl = read("x11-dl")?;
+    trim::minifb(&mut minifb, &trim::named_keys(root)?)?;
     trim::x11_dl(&mut x11_dl, &trim::called_functions(&minifb)?)?;
-    trim::minifb(&mut minifb)?;
+    let mut crossbeam_deque = read("crossbeam-deque")?;
+    trim::crossbeam_deque(&mut crossbeam_deque)?;
     let mut rayon_core = read("rayon-core")?;
     trim::rayon_core(&mut rayon_core)?;
     let mut wide = read("wide")?;
@@ -42,7 +44,13 @@ pub fn prepare(root: &Path, output: &Path, toolchain: &Toolchain) -> Result<Path
     let mut replaced = Vec::new();
     let mut manifest = read_text(&root.join("Cargo.toml"))?;
     manifest.push_str("\n[patch.crates-io]\n");
-    let replacements = [("minifb", minifb), ("x11-dl", x11_dl), ("rayon-core", rayon_core), ("wide", wide)];
+    let replacements = [
+        ("minifb", minifb),
+        ("x11-dl", x11_dl),
+        ("rayon-core", rayon_core),
+        ("crossbeam-deque", crossbeam_deque),
+        ("wide", wide),
+    ];
     for (name, source) in replacements {
         source.write(&output.join("deps").join(name))?;
         manifest.push_str(&format!("{name} = {{ path = \"../deps/{name}\" }}\n"));

@@ -22,9 +22,10 @@ fn surface(roughness: f32, exponent: f32) -> Surface {
         normal: up,
         outward: up,
         inside: FALSE,
-        key: F::ZERO,
         uv: [F::ZERO; 2],
         clearance: F::ZERO,
+        node: F::ZERO,
+        part: F::ZERO,
         material: material.channels().map(splat),
     }
 }

@@ -15,9 +15,10 @@ fn glass(normal: V3, facing: V3, inside: bool, ior: f32, f0: f32) -> Surface {
         normal,
         outward: V3::select(inside, -facing, facing),
         inside,
-        key: F::ZERO,
         uv: [F::ZERO; 2],
         clearance: ZERO,
+        node: ZERO,
+        part: ZERO,
         material: material.channels().map(splat),
     }
 }

@@ -6,7 +6,8 @@ use crate::math::lanes::{F, TRUE, splat as all};
 use crate::quality::Quality;
 use crate::render::Stage;
 use crate::scene::{
-    Cone, Cylinder, Light, LightKind, Material, Plane, Scene, Shading, Sphere, Texture, Triangle,
+    Cone, Cylinder, Field, Join, Light, LightKind, Material, Node, Plane, Scene, Shading, Sphere, Texture,
+    Triangle,
 };
 use crate::shade::{Visibility, direct, split as split_light};
 use crate::trace::check::{Random, packet, poisoned, splat};
@@ -47,6 +48,15 @@ fn mixed(random: &mut Random) -> Scene {
         scene.cones.push(Cone { apex, axis, slope, range, caps, material });
         let corners = [0; 3].map(|_| random.vector(-2, 3));
         scene.triangles.push(Triangle { corners, material });
+        let nodes = (0..3).map(|k| {
+            let node = if k == 1 {
+                Node::cuboid(random.vector(-2, 2), Vec3::new(0.3, 0.5, 0.4), 0.1)
+            } else {
+                Node::sphere(random.vector(-2, 2), random.size(-3, 0))
+            };
+            Node { material: (material + k) % 4, ..node.joined(Join::Union, 0.3 * k as f32) }
+        });
+        scene.fields.push(Field::new(nodes.collect()));
     }
     scene.planes.push(Plane { point: Vec3::NEG_Y * 3.0, normal: Vec3::Y, reach: 20.0, material: 0 });
     scene.lights.push(Light {
@@ -64,10 +74,17 @@ fn mixed(random: &mut Random) -> Scene {
 fn found(stage: &Stage, rays: &Rays8) -> Vec<[u32; 8]> {
     let scene = stage.scene;
     let counters = &mut Counters::default();
-    let hits = nearest(scene, rays, u64::MAX, counters);
+    let hits = nearest(scene, &Quality::PRESETS[3].1, rays, u64::MAX, counters);
     let solid = hits.id.simd_ge(F::ZERO);
-    let shadow = occlusion(scene, &stage.bits, rays, TRUE, u64::MAX, counters);
-    let s = surface(scene, rays, solid.select(hits.t, F::ZERO), solid.select(hits.id, all(NONE)), all(0.01));
+    let shadow = occlusion(scene, &Quality::PRESETS[3].1, &stage.bits, rays, TRUE, u64::MAX, counters);
+    let s = surface(
+        scene,
+        &Quality::PRESETS[3].1,
+        rays,
+        solid.select(hits.t, F::ZERO),
+        solid.select(hits.id, all(NONE)),
+        all(0.01),
+    );
     let view = -rays.direction;
     let mut codes = [F::ZERO; 8];
     let trace = Visibility::Trace(&[u64::MAX; 8]);
@@ -85,7 +102,7 @@ fn found(stage: &Stage, rays: &Rays8) -> Vec<[u32; 8]> {
         lit.highlight,
     ];
     let of_surface = vectors.into_iter().flat_map(|v| [v.x, v.y, v.z]).chain(s.material).chain(codes);
-    values.extend(of_surface.chain([s.clearance, s.inside, light.total]).map(|v| v & solid));
+    values.extend(of_surface.chain([s.clearance, s.inside, s.node, s.part, light.total]).map(|v| v & solid));
     let bits = |v: f32| if v.is_nan() { u32::MAX } else { v.to_bits() };
     values.into_iter().map(|v| v.to_array().map(bits)).collect()
 }
@@ -133,13 +150,21 @@ fn poisoned_rays_neither_panic_nor_hit_at_nan() {
         for eight in poisoned().chunks_exact(8) {
             let mut next = eight.iter();
             let rays = packet(|| *next.next().unwrap());
-            let hits = nearest(&scene, &rays, u64::MAX, &mut Counters::default());
+            let hits = nearest(&scene, &Quality::PRESETS[3].1, &rays, u64::MAX, &mut Counters::default());
             for (lane, ray) in eight.iter().enumerate() {
                 let (t, id) = (hits.t.to_array()[lane], hits.id.to_array()[lane]);
                 let replay = || format!("{scene:?} {ray:?}");
                 assert!(t > 0.0 && (t < f32::INFINITY) == (id >= 0.0), "{t} {id} {}", replay());
             }
-            let code = occlusion(&scene, &stage.bits, &rays, TRUE, u64::MAX, &mut Counters::default());
+            let code = occlusion(
+                &scene,
+                &Quality::PRESETS[3].1,
+                &stage.bits,
+                &rays,
+                TRUE,
+                u64::MAX,
+                &mut Counters::default(),
+            );
             assert!(code.simd_ge(all(BLOCKED)).all(), "{code:?} {eight:?}");
             found(&stage, &rays);
         }
@@ -160,7 +185,8 @@ fn row(glass: &[bool], lamp: f32) -> f32 {
     };
     let stage = Stage::new(&scene, &Quality::named("high").unwrap(), 8, 8);
     let rays = packet(|| (Vec3::ZERO, Vec3::Z * lamp));
-    occlusion(&scene, &stage.bits, &rays, TRUE, u64::MAX, &mut Counters::default()).to_array()[3]
+    occlusion(&scene, &Quality::PRESETS[3].1, &stage.bits, &rays, TRUE, u64::MAX, &mut Counters::default())
+        .to_array()[3]
 }
 
 #[test]
@@ -190,7 +216,15 @@ fn what_the_lamp_sits_on_does_not_hide_it() {
             let o = lamp + (up + n * 0.5) * random.size(-4, 8);
             (o, lamp - o)
         });
-        let code = occlusion(&scene, &[0.0], &rays, TRUE, u64::MAX, &mut Counters::default());
+        let code = occlusion(
+            &scene,
+            &Quality::PRESETS[3].1,
+            &[0.0],
+            &rays,
+            TRUE,
+            u64::MAX,
+            &mut Counters::default(),
+        );
         assert_eq!(code, F::ZERO, "{scene:?} {:?} {:?}", rays.origin, rays.direction);
     }
 }

@@ -7,6 +7,7 @@
 use crate::counters::Counters;
 use crate::math::lanes::{F, V3, splat};
 use crate::mesh::{Assembly, Instance, Mesh};
+use crate::quality::Quality;
 use crate::scene::Shading;
 use crate::scene::{Channel, Cone, Cylinder, Material, Plane, Scene, Sphere, Triangle};
 use crate::shade::split;
@@ -109,9 +110,16 @@ fn true_normal(scene: &Scene, s: &Surface, part: u32, lane: usize) -> DVec3 {
 
 /// The first hits, as shading finds them.
 fn hit(scene: &Scene, rays: &Rays8) -> (F, F, Surface) {
-    let hits = nearest(scene, rays, u64::MAX, &mut Counters::default());
+    let hits = nearest(scene, &Quality::PRESETS[3].1, rays, u64::MAX, &mut Counters::default());
     let solid = hits.id.simd_ge(F::ZERO);
-    let s = surface(scene, rays, solid.select(hits.t, F::ZERO), solid.select(hits.id, splat(NONE)), F::ZERO);
+    let s = surface(
+        scene,
+        &Quality::PRESETS[3].1,
+        rays,
+        solid.select(hits.t, F::ZERO),
+        solid.select(hits.id, splat(NONE)),
+        F::ZERO,
+    );
     (hits.t, hits.id, s)
 }
 

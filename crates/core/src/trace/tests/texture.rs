@@ -3,6 +3,7 @@
 
 use crate::math::lanes::{F, V3, splat};
 use crate::math::noise::value_noise;
+use crate::quality::Quality;
 use crate::scene::{Channel, Material, Plane, Scene, Texture};
 use crate::trace::check::Random;
 use crate::trace::{Rays8, Surface, surface};
@@ -16,7 +17,7 @@ fn seen(texture: Texture, points: [Vec3; 8], spread: f32) -> Surface {
     let scene = Scene { planes: vec![plane], materials: vec![material], ..Scene::default() };
     let origin = V3::from_fn(|i| points[i] + Vec3::Y * 10.0);
     let rays = Rays8 { origin, direction: V3::splat(Vec3::NEG_Y) };
-    surface(&scene, &rays, splat(10.0), F::ZERO, splat(spread))
+    surface(&scene, &Quality::PRESETS[3].1, &rays, splat(10.0), F::ZERO, splat(spread))
 }
 
 fn points(random: &mut Random) -> [Vec3; 8] {

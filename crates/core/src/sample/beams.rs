@@ -1,0 +1,49 @@
+//! Beams as the eye sees them, added to a tile's finished pixels in blocks of eight by eight.
+//!
+//! They are thin and bright, so nothing is interpolated: each pixel has its own ray, which ends at
+//! the depth of the pixel's surface.
+
+use super::tile::{TILE, Tile};
+use super::wave::Scratch;
+use crate::counters::Counter;
+use crate::features;
+use crate::math::lanes::{F, RAMP, V3, load, splat};
+use crate::render::Stage;
+use crate::shade::beam;
+use crate::trace::Rays8;
+use glam::Vec2;
+
+/// Side of a block, px.
+const BLOCK: usize = 8;
+
+/// Adds the beams to the tile whose upper left pixel is `corner`.
+#[inline(never)]
+pub fn beams(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize), tile: &mut Tile) {
+    if !features::BEAMS {
+        return;
+    }
+    let forward = V3::splat(stage.forward());
+    let half = Vec2::splat(0.5 * BLOCK as f32 * stage.pixel);
+    for (light, dop) in stage.scene.beams.iter().zip(&stage.beams) {
+        for block in 0..(TILE / BLOCK) * (TILE / BLOCK) {
+            let (x, y) = (block % (TILE / BLOCK) * BLOCK, block / (TILE / BLOCK) * BLOCK);
+            let (left, top) = ((corner.0 + x) as f32, (corner.1 + y) as f32);
+            let middle = stage.on_screen(left + 0.5 * BLOCK as f32, top + 0.5 * BLOCK as f32);
+            if !dop.meets_rectangle(middle, half) {
+                continue;
+            }
+            scratch.counters.add(Counter::Beams, BLOCK * BLOCK);
+            for row in 0..BLOCK {
+                let at = (y + row) * TILE + x;
+                let direction = stage.directions(splat(left + 0.5) + RAMP, splat(top + 0.5 + row as f32));
+                let rays = Rays8 { origin: V3::splat(stage.scene.camera.position), direction };
+                let end = F::ONE / (load(&tile.nearness[at..]) * direction.dot(forward));
+                let add = beam(light, &rays, splat(stage.pixel), end);
+                for (plane, add) in tile.rgb.iter_mut().zip([add.x, add.y, add.z]) {
+                    let sum = load(&plane[at..]) + add;
+                    plane[at..at + 8].copy_from_slice(sum.as_array());
+                }
+            }
+        }
+    }
+}

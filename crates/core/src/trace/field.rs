@@ -1,0 +1,253 @@
+//! Rays against signed distance fields: eight rays march together (Hart 1996).
+//!
+//! A ray goes on by the field's value over its Lipschitz constant, which can't pass the surface,
+//! until that is under an epsilon that grows with the distance; a secant then takes it closer. Rays
+//! start and end at what holds the body: the field's box, and the balls around its bodies, grown by
+//! the radius of the smooth joins. A body whose grown ball a ray misses is left out for that ray,
+//! so a ray's result still depends on its own lane only. Normals and materials see all bodies.
+
+use super::{Rays8, Span};
+use crate::counters::{Counter, Counters};
+use crate::math::lanes::{F, INFINITY, TRUE, V3, splat};
+use crate::quality::Quality;
+use crate::scene::{Field, Form, Join, Node};
+use glam::Vec3;
+
+/// Per node: the mask of lanes that it matters to, or its share of each lane's surface.
+pub type Nodes = [F; Field::MOST];
+
+/// How far beyond a body smooth joins reach, in radii of the join: it is within a quarter of one
+/// where two join, and less than one where more do.
+const REACH: f32 = 1.25;
+
+/// Folds space into the cell about the origin; every other cell is mirrored.
+#[inline(never)]
+fn folded(field: &Field, p: V3) -> V3 {
+    let axis = |x: F, side: f32, most: f32| {
+        if side <= 0.0 {
+            return x;
+        }
+        let at = (x * splat(1.0 / side) + splat(0.5)).floor();
+        let at = at.fast_max(splat(-most)).fast_min(splat(most));
+        let odd = at - (at * splat(0.5)).floor() * splat(2.0);
+        (x - at * splat(side)) * (F::ONE - (odd + odd))
+    };
+    let (cell, copies) = (field.cell, field.copies);
+    V3::new(axis(p.x, cell.x, copies.x), axis(p.y, cell.y, copies.y), axis(p.z, cell.z, copies.z))
+}
+
+/// Distance from a node's form, in its own place.
+#[inline(always)]
+fn form(node: &Node, p: V3) -> F {
+    let mut p = p - V3::splat(node.centre);
+    if let Some(axes) = node.axes {
+        let [x, y, z] = axes.to_cols_array_2d().map(|c| p.dot(V3::splat(c.into())));
+        p = V3::new(x, y, z);
+    }
+    let half = match node.form {
+        Form::Plane => return p.y - splat(node.rounding),
+        Form::Box(Vec3::ZERO) => return p.length() - splat(node.rounding),
+        Form::Box(half) => half,
+        Form::Round([half, height, distance]) => {
+            let out = (p.x * p.x + p.z * p.z).sqrt() - splat(distance);
+            p = V3::new(out, p.y, F::ZERO);
+            // Endless across, so that only the rectangle counts.
+            Vec3::new(half, height, 1e9)
+        }
+        Form::Swell { amplitude, frequency } => {
+            let wave = |x: F| {
+                let x = x * splat(frequency / std::f32::consts::TAU);
+                let x = (x - (x + splat(0.5)).floor()) * splat(2.0);
+                splat(4.0) * x * (F::ONE - x.abs())
+            };
+            return splat(amplitude) * wave(p.x) * wave(p.y) * wave(p.z);
+        }
+    };
+    let half = V3::splat(half);
+    let q = V3::new(p.x.abs() - half.x, p.y.abs() - half.y, p.z.abs() - half.z);
+    let zero = F::ZERO;
+    let outside = V3::new(q.x.fast_max(zero), q.y.fast_max(zero), q.z.fast_max(zero));
+    let inside = q.x.fast_max(q.y).fast_max(q.z).fast_min(zero);
+    outside.length() + inside - splat(node.rounding)
+}
+
+/// The field's value at points, of the nodes that are `near` only. With `shares`, also how much of
+/// each node is in it; they sum to 1.
+#[inline(never)]
+pub fn distance(field: &Field, p: V3, near: &Nodes, mut shares: Option<&mut Nodes>) -> F {
+    let inner = if field.cell == Vec3::ZERO { p } else { folded(field, p) };
+    let mut sum = INFINITY;
+    for (i, (node, &near)) in field.nodes.iter().zip(near).enumerate() {
+        if !near.any() {
+            continue;
+        }
+        let d = form(node, if node.repeats { inner } else { p });
+        // Cutting is joining from the other side.
+        let (a, b) = match node.join {
+            Join::Union => (sum, near.select(d, INFINITY)),
+            Join::Intersection => (-sum, -d),
+            Join::Subtraction => (-sum, d),
+            Join::Sum => {
+                sum += d;
+                continue;
+            }
+        };
+        let mut least = a.fast_min(b);
+        let mut h = F::ZERO;
+        if node.blend > 0.0 {
+            let k = splat(node.blend);
+            h = (k - (a - b).abs()).fast_max(F::ZERO);
+            least -= h * h * splat(0.25 / node.blend);
+            h *= splat(0.5 / node.blend);
+        }
+        sum = if node.join == Join::Union { least } else { -least };
+        if let Some(shares) = &mut shares {
+            let h = if node.mix { h } else { F::ZERO };
+            let share = b.simd_lt(a).select(F::ONE - h, h);
+            for before in &mut shares[..i] {
+                *before *= F::ONE - share;
+            }
+            shares[i] = share;
+        }
+    }
+    sum
+}
+
+/// Where `rays` meet the field before `limit`: from outside both ends of the span are where they
+/// enter; from inside its end is where they leave.
+#[inline(never)]
+pub fn field(rays: &Rays8, field: &Field, limit: F, quality: &Quality, counters: &mut Counters) -> Span {
+    let (o, d) = (rays.origin, rays.direction);
+    let square = d.dot(d);
+    let speed = square.sqrt();
+    let epsilon = splat(quality.epsilon);
+    let (enter, exit) = rays.in_box(field.lo, field.hi, limit);
+    let mut near = [TRUE; Field::MOST];
+    let (mut from, mut to) = (INFINITY, F::ZERO);
+    let blend = field.nodes.iter().fold(0.0, |k: f32, n| k.max(n.blend));
+    for (node, near) in field.nodes.iter().zip(&mut near) {
+        if let Some(half) = node.core() {
+            let f = o - V3::splat(node.centre);
+            let middle = f.dot(d) / square;
+            let off = f - d * middle;
+            let away = f.length();
+            let reach =
+                splat(half.length() + node.rounding + REACH * blend) + epsilon * splat(4.0) * (F::ONE + away);
+            let left = reach * reach - off.dot(off);
+            let half = left.fast_max(F::ZERO).sqrt() / speed;
+            *near = left.simd_gt(F::ZERO) & half.simd_gt(middle);
+            from = near.select(from.fast_min(-middle - half), from);
+            to = near.select(to.fast_max(half - middle), to);
+        } else if node.join == Join::Union {
+            (from, to) = (F::ZERO, INFINITY);
+        }
+    }
+    let start = enter.fast_max(from);
+    let end = exit.fast_min(to);
+    let mut active = start.simd_lt(end);
+    let mut found = F::ZERO;
+    let mut t = active.select(start, F::ZERO);
+    let (mut last_t, mut last) = (t, F::ZERO);
+    let mut sign = F::ONE;
+    let pace = splat(1.0 / field.lipschitz().max(1.0));
+    for step in 0..quality.steps {
+        if !active.any() {
+            break;
+        }
+        counters.add(Counter::FieldSteps, active.to_bitmask().count_ones() as usize);
+        let mut value = distance(field, o + d * t, &near, None);
+        if step == 0 {
+            // Only what begins within the body is inside; where the box cuts it, it is closed.
+            sign = (t.simd_le(F::ZERO) & value.simd_lt(F::ZERO)).select(splat(-1.0), F::ONE);
+        }
+        value *= sign * pace;
+        let arrived = active & value.simd_lt(epsilon * (F::ONE + t * speed));
+        // The last step's slope carries it the rest of the way, if it has one.
+        let slope = (last - value) / (t - last_t);
+        let rest = (value / slope).fast_max(F::ZERO).fast_min((value + value).fast_max(F::ZERO) / speed);
+        t = arrived.select(t + rest, t);
+        found |= arrived;
+        active &= !arrived;
+        (last_t, last) = (active.select(t, last_t), active.select(value, last));
+        t = active.select(t + value / speed, t);
+        active &= t.simd_lt(end);
+    }
+    // Out of steps: near enough is there.
+    let hit = found | (active & last.simd_lt(splat(16.0) * epsilon * (F::ONE + last_t * speed)));
+    let inside = hit & sign.simd_lt(F::ZERO);
+    let miss = splat(-1.0);
+    Span {
+        enter: inside.select(miss, hit.select(t, miss)),
+        exit: hit.select(t, miss),
+        enter_part: F::ZERO,
+        exit_part: F::ZERO,
+    }
+}
+
+/// A point of a field: put back onto the surface, with the unit normal that points out of the body.
+pub struct Point {
+    /// World.
+    pub point: V3,
+    /// Unit vector.
+    pub outward: V3,
+    /// How much each node has of the surface there.
+    pub shares: Nodes,
+}
+
+/// The surface near `p`. `width` is that of the rays' footprints there, world units: finer detail is
+/// left out of the normal.
+///
+/// The gradient by central differences over about the distance at which rounding and curvature weigh
+/// the same. Four corners of a tetrahedron (Quilez) would do with two values less, but their error is of
+/// first order: with edges rounded by 0.1, a degree.
+#[inline(never)]
+pub fn locate(field: &Field, p: V3, width: F, toward: V3) -> Point {
+    let all = [TRUE; Field::MOST];
+    let mut shares = [F::ZERO; Field::MOST];
+    let value = distance(field, p, &all, Some(&mut shares));
+    let size = p.x.abs().fast_max(p.y.abs()).fast_max(p.z.abs());
+    let h = (splat(2e-3) + size * splat(4e-4)).fast_max(width * splat(0.5)).fast_min(splat(0.05));
+    let mut sum = V3::ZERO;
+    for axis in Vec3::AXES {
+        let step = V3::splat(axis);
+        let side = |h: F| distance(field, p + step * h, &all, None);
+        sum += step * (side(h) - side(-h));
+    }
+    // On a ridge or at a middle there is no gradient: there it points at the ray's origin.
+    let none = sum.dot(sum).simd_gt(splat(1e-30));
+    let outward = V3::select(none, sum, -toward).normalize();
+    let off = value.fast_max(splat(-0.05)).fast_min(splat(0.05));
+    Point { point: p - outward * off, outward, shares }
+}
+
+/// Samples along the normal by which ambient occlusion is estimated.
+const TAPS: [f32; 3] = [0.2, 0.55, 1.0];
+
+/// Share of the light from all around that fields leave to surfaces with unit normal `n` at `p`: how
+/// much nearer than `reach` their bodies come along the normal.
+#[inline(never)]
+pub fn ambient_share(fields: &[Field], reach: f32, p: V3, n: V3, active: F, counters: &mut Counters) -> F {
+    let all = [TRUE; Field::MOST];
+    let mut open = F::ONE;
+    for field in fields {
+        let mut hidden = F::ZERO;
+        let (lo, hi) = (V3::splat(field.lo - reach), V3::splat(field.hi + reach));
+        let within = |x: F, lo: F, hi: F| x.simd_gt(lo) & x.simd_lt(hi);
+        let near = active & within(p.x, lo.x, hi.x) & within(p.y, lo.y, hi.y) & within(p.z, lo.z, hi.z);
+        if !near.any() {
+            continue;
+        }
+        counters.add(Counter::FieldOcclusion, 8);
+        for tap in TAPS {
+            let far = splat(reach * tap);
+            let value = distance(field, p + n * far, &all, None);
+            hidden += (far - value).fast_max(F::ZERO).fast_min(far)
+                * splat(1.0 / (reach * tap * TAPS.len() as f32));
+        }
+        open *= F::ONE - (near & hidden);
+    }
+    open
+}
+
+#[cfg(test)]
+mod tests;
