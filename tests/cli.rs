@@ -8,6 +8,7 @@ use std::fs::{read, write};
 use std::io::Read;
 use std::path::Path;
 use std::process::{Output, Stdio};
+use support::picture::psnr;
 use support::{command, frame, names, run};
 use tempfile::tempdir;
 
@@ -215,6 +216,24 @@ fn the_number_of_threads_changes_no_byte() {
     for threads in ["2", "3", "8", "256"] {
         assert!(with(threads) == one, "{threads} threads");
     }
+}
+
+#[test]
+fn a_still_averages_sample_patterns_on_any_number_of_threads() {
+    let dir = tempdir().unwrap();
+    let with = |patterns, threads| {
+        let args =
+            ["--frame", "60", "--size", "96x54", "-o", "-", "--average", patterns, "--threads", threads];
+        let output = run(dir.path(), &args);
+        succeeded(patterns, &output);
+        ppm(&output.stdout).2
+    };
+    assert!(with("1", "1") == frame(60, (96, 54), default_quality()), "one pattern is the frame itself");
+    let five = with("5", "1");
+    assert!(five == with("5", "3"), "the same on three threads");
+    let fine = with("64", "2");
+    let distance = |picture: &[u32]| psnr(&fine, picture);
+    assert!(distance(&five) > distance(&with("1", "2")), "more patterns come closer to very many");
 }
 
 #[test]

@@ -11,6 +11,7 @@ use std::ffi::OsStr;
 /// The largest picture, 8K.
 pub const LARGEST: (u32, u32) = (7680, 4320);
 const MOST_THREADS: u64 = 256;
+const MOST_PATTERNS: u64 = 1024;
 
 /// What the user wants.
 #[derive(Debug, PartialEq)]
@@ -34,6 +35,8 @@ pub struct Options<'a> {
     pub size: (u32, u32),
     /// Index into the presets; without it, the player adapts and a frame takes the default.
     pub quality: Option<usize>,
+    /// Sample patterns that a frame averages.
+    pub average: u32,
     /// Index of the only part to show.
     pub scene: Option<usize>,
     /// End instead of looping.
@@ -53,6 +56,7 @@ pub fn parse<'a>(args: &[&'a OsStr]) -> Result<Request<'a>, Text> {
         output: None,
         size: (1280, 720),
         quality: None,
+        average: 1,
         scene: None,
         once: false,
         from: 0,
@@ -60,6 +64,7 @@ pub fn parse<'a>(args: &[&'a OsStr]) -> Result<Request<'a>, Text> {
         fullscreen: false,
     };
     let mut windowed: &[u8] = b"";
+    let mut still: &[u8] = b"";
     let mut args = args.iter();
     while let Some(&flag) = args.next() {
         let flag = flag.as_encoded_bytes();
@@ -99,7 +104,15 @@ pub fn parse<'a>(args: &[&'a OsStr]) -> Result<Request<'a>, Text> {
                 options.scene = Some(scenes().position(|name| v == name)?);
                 Some(())
             })?,
+            b"--average" => {
+                still = b"--average";
+                value(&counting(1, MOST_PATTERNS), &mut |v| {
+                    options.average = whole(v.as_encoded_bytes(), 1, MOST_PATTERNS)? as u32;
+                    Some(())
+                })?
+            }
             b"-o" => value(b"a name ending in .png or .ppm, or - for standard output", &mut |v| {
+                still = b"-o";
                 let name = v.as_encoded_bytes();
                 options.output = Some(v);
                 (name == b"-" || name.ends_with(b".png") || name.ends_with(b".ppm")).then_some(())
@@ -115,8 +128,8 @@ pub fn parse<'a>(args: &[&'a OsStr]) -> Result<Request<'a>, Text> {
             _ => return Err(join(&[&quoted(flag), b" is not an option; --help lists them"])),
         }
     }
-    if options.frame.is_none() && options.output.is_some() {
-        return Err(join(&[b"-o needs --frame N, the frame to write"]));
+    if options.frame.is_none() && !still.is_empty() {
+        return Err(join(&[still, b" needs --frame N, the frame to write"]));
     }
     if options.frame.is_some() && !windowed.is_empty() {
         return Err(join(&[windowed, b" is for playing in a window; leave it or --frame out"]));
@@ -169,6 +182,7 @@ Lúč, a ray-traced intro. Esc or closing the window ends it.
         &one_of(&mut qualities()),
         b"
                    (a frame: high; playing: whatever holds 60 frames a second)
+  --average K      a frame as the mean of K sample patterns, 1 to 1024 (1)
   --scene NAME     only this part, ",
         &one_of(&mut scenes()),
         b"; N counts from its start
@@ -226,7 +240,7 @@ mod tests {
         let text = String::from_utf8(help()).unwrap();
         let default = Quality::PRESETS[Quality::DEFAULT].0;
         assert!(text.contains(&["a frame: ", default].concat()), "{text}");
-        assert!(text.len() < 1100, "{} bytes", text.len());
+        assert!(text.len() < 1200, "{} bytes", text.len());
         assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
     }
 
@@ -241,6 +255,8 @@ mod tests {
             (&["--scene", "Mirror"], ", not 'Mirror'"),
             (&["--frame=3"], "'--frame=3' is not an option"),
             (&["-o", "a.png"], "-o needs --frame"),
+            (&["--average", "4"], "--average needs --frame"),
+            (&["--frame", "1", "--average", "0"], "--average wants a whole number from 1 to 1024, not '0'"),
             (&["--frame", "1", "--fullscreen"], "--fullscreen is for playing"),
         ] {
             let sentence = read(args).unwrap_err();

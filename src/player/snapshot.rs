@@ -27,7 +27,8 @@ pub fn write(options: &Options, n: u64) -> Result<(), Text> {
         Some(part) => show::start(part) + n % show::PARTS[part].frames,
         None => n,
     };
-    let quality = &Quality::PRESETS[options.quality.unwrap_or(Quality::DEFAULT)].1;
+    let (_, preset) = Quality::PRESETS[options.quality.unwrap_or(Quality::DEFAULT)];
+    let quality = &Quality { average: options.average, ..preset };
     show::frame(&mut Renderer::default(), n, options.size, quality, &mut pixels);
 
     let is_png = output.as_encoded_bytes().ends_with(b".png");

@@ -22,6 +22,8 @@ counters! {
     PrimaryRays "primary rays",
     ReflectedRays "reflected rays",
     RefractedRays "refracted rays",
+    RoughRays "rays drawn by rough mirrors",
+    ScatterRays "rays of diffuse bounces",
     ShadowRays "shadow rays",
     SphereTests "tests of spheres",
     PlaneTests "tests of planes",

@@ -7,6 +7,7 @@
 use crate::counters::Counter;
 use crate::mesh::Instance;
 use crate::quality::{Quality, Rung};
+use crate::sample::ROUGH;
 use crate::scene::{Field, LightKind, Material, Scene, Shading};
 
 /// The machinery that a frame calls for, as the counters that it moves.
@@ -20,7 +21,13 @@ impl Plan {
         let lamps = !scene.lights.is_empty() || !scene.emitters.is_empty();
         let lit = lamps && materials().any(|m| m.diffuse > 0.0 || m.specular.max_element() > 0.0);
         let chains = quality.depth > 0;
-        let mirrors = chains && materials().any(|m| m.reflection > 0.0 && m.f0.max_element() > 0.0);
+        let ggx = scene.shading == Shading::Ggx;
+        let is_rough = |m: &Material| ggx && quality.rough > 0 && m.roughness > ROUGH && !m.is_transparent();
+        let reflects = |m: &Material| m.reflection > 0.0 && m.f0.max_element() > 0.0;
+        let mirrors = chains && materials().any(reflects);
+        let rough = chains && materials().any(|m| reflects(m) && is_rough(m));
+        let bounces =
+            chains && quality.scatter > 0 && scene.bounces > 0 && materials().any(|m| m.diffuse > 0.0);
         let glass = chains && materials().any(|m| m.is_transparent());
         let adaptive = quality.block > 1;
         let grain = materials().any(|m| m.texture.grain > 0.0);
@@ -42,6 +49,8 @@ impl Plan {
             (Counter::SmoothFacets, scene.meshes.instances().iter().any(|i| i.mesh().is_smooth())),
             (Counter::ReflectedRays, mirrors),
             (Counter::RefractedRays, glass),
+            (Counter::RoughRays, rough),
+            (Counter::ScatterRays, bounces),
             (Counter::EmitterTests, (mirrors || glass) && !scene.emitters.is_empty()),
             (Counter::DiscTests, !scene.background.discs.is_empty()),
             (Counter::Glows, !scene.background.glows.is_empty()),

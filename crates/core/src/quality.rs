@@ -22,8 +22,6 @@ pub struct Quality {
     pub tolerance: f32,
     /// Side of the smallest cell that may be split no further, px; 1 refines to the pixel.
     pub smallest: u32,
-    /// Compare with a sample in the middle of each cell before interpolating.
-    pub centre: bool,
     /// What is interpolated.
     pub rung: Rung,
     /// Additional samples of pixels on an edge.
@@ -32,6 +30,10 @@ pub struct Quality {
     pub samples: u32,
     /// Longest chain of mirrors and refractions.
     pub depth: u32,
+    /// Rays of a bounce of diffuse light, where the scene has bounces; 0 for its ambient light.
+    pub scatter: u32,
+    /// Rays drawn for the mirror of a rough surface under GGX; 0 for one with a wide footprint.
+    pub rough: u32,
     /// Rays whose contribution is at most this are not followed, in units of display white.
     pub cutoff: f32,
     /// How near to a field a ray must come to hit it, world units at the ray's origin; it grows
@@ -41,6 +43,8 @@ pub struct Quality {
     pub steps: u32,
     /// Leave out shapes and occluders that a tile can't meet. Changes the time, never the picture.
     pub cull: bool,
+    /// Frames with different sample patterns that are averaged: 1, more for a still.
+    pub average: u32,
 }
 
 impl Quality {
@@ -52,15 +56,17 @@ impl Quality {
                 block: 32,
                 tolerance: 0.06,
                 smallest: 2,
-                centre: true,
                 rung: Rung::Colour,
                 edge_samples: 0,
                 samples: 0,
                 depth: 2,
+                scatter: 0,
+                rough: 0,
                 cutoff: 0.1,
                 epsilon: 2e-3,
                 steps: 48,
                 cull: true,
+                average: 1,
             },
         ),
         (
@@ -69,15 +75,17 @@ impl Quality {
                 block: 16,
                 tolerance: 0.04,
                 smallest: 1,
-                centre: true,
                 rung: Rung::Colour,
                 edge_samples: 0,
                 samples: 0,
                 depth: 3,
+                scatter: 0,
+                rough: 0,
                 cutoff: 0.06,
                 epsilon: 1e-3,
                 steps: 64,
                 cull: true,
+                average: 1,
             },
         ),
         (
@@ -86,15 +94,17 @@ impl Quality {
                 block: 16,
                 tolerance: 0.03,
                 smallest: 1,
-                centre: true,
                 rung: Rung::Light,
                 edge_samples: 1,
                 samples: 0,
                 depth: 4,
+                scatter: 0,
+                rough: 0,
                 cutoff: 0.04,
                 epsilon: 5e-4,
                 steps: 96,
                 cull: true,
+                average: 1,
             },
         ),
         (
@@ -103,15 +113,17 @@ impl Quality {
                 block: 16,
                 tolerance: 0.02,
                 smallest: 1,
-                centre: true,
                 rung: Rung::Surface,
                 edge_samples: 3,
                 samples: 0,
                 depth: 5,
+                scatter: 0,
+                rough: 0,
                 cutoff: 0.02,
                 epsilon: 3e-4,
                 steps: 128,
                 cull: true,
+                average: 1,
             },
         ),
         (
@@ -120,15 +132,17 @@ impl Quality {
                 block: 8,
                 tolerance: 0.008,
                 smallest: 1,
-                centre: true,
                 rung: Rung::Surface,
                 edge_samples: 7,
                 samples: 0,
                 depth: 7,
+                scatter: 4,
+                rough: 4,
                 cutoff: 0.01,
                 epsilon: 2e-4,
                 steps: 192,
                 cull: true,
+                average: 1,
             },
         ),
         (
@@ -137,15 +151,17 @@ impl Quality {
                 block: 1,
                 tolerance: 0.0,
                 smallest: 1,
-                centre: true,
                 rung: Rung::Surface,
                 edge_samples: 15,
                 samples: 15,
                 depth: 12,
+                scatter: 4,
+                rough: 4,
                 cutoff: 0.001,
                 epsilon: 1e-4,
                 steps: 384,
                 cull: true,
+                average: 1,
             },
         ),
     ];

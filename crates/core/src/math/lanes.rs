@@ -109,6 +109,15 @@ pub fn max(a: F, b: F) -> F {
     if cfg!(target_arch = "x86_64") { a.fast_max(b) } else { select(a.simd_gt(b), a, b) }
 }
 
+/// Lane `index[i]` of `v`, modulo 8, in each lane i.
+#[inline(always)]
+pub fn pick(v: F, index: U) -> F {
+    #[cfg(all(target_arch = "x86_64", target_feature = "avx2"))]
+    return F::from(safe_arch::shuffle_av_f32_all_m256(v.to_array().into(), index.to_array().into()).0);
+    #[cfg(not(all(target_arch = "x86_64", target_feature = "avx2")))]
+    return F::new(index.to_array().map(|i| v.as_array()[i as usize % LANES]));
+}
+
 /// |magnitude| with the sign bit of `sign`, also of −0.
 #[inline(always)]
 pub fn copysign(magnitude: F, sign: F) -> F {

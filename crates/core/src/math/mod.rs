@@ -14,6 +14,7 @@ pub mod hash;
 pub mod lanes;
 pub mod lanes_fn;
 pub mod noise;
+pub mod sampling;
 pub mod scalar;
 
 #[cfg(test)]

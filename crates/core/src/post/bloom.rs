@@ -7,7 +7,7 @@
 //! of seven taps (sigma 1.22 px), and the octaves are joined bilinearly with weights 0.35, 0.28,
 //! 0.22 and 0.15 (after Jimenez 2014, with fixed weights).
 
-use crate::math::lanes::{F, RAMP, V3, from_bits, splat};
+use crate::math::lanes::{F, RAMP, V3, from_bits, pick, splat, splat_u};
 use crate::parallel;
 use crate::render::Stage;
 use crate::sample::{TILE, Tile};
@@ -139,19 +139,17 @@ impl Glow {
         let (fx, fy) = (u - columns, v - row);
         let first = columns.as_array()[0];
         let start = self.at(first as usize, row.as_array()[0] as usize);
-        let offsets = (columns - splat(first)).trunc_int().to_array();
+        let offsets = (columns - splat(first)).trunc_int().cast_unsigned();
         let colour = |k: usize| {
             let upper = &self.light[start + k * self.stride()..];
-            let lower = &upper[self.line()..];
-            // Eight pixels lie on nine columns at most.
-            let mut near = [0.0; 16];
-            for i in [0, 8] {
-                let a = load(upper, i);
-                near[i..i + 8].copy_from_slice((a + (load(lower, i) - a) * fy).as_array());
+            let a = load(upper, 0);
+            if scale == 1 {
+                return a;
             }
-            let gather = |right: i32| F::new(offsets.map(|o| near[(o + right) as usize & 15]));
-            let a = gather(0);
-            a + (gather(1) - a) * fx
+            // Eight pixels lie on six columns at most.
+            let near = a + (load(&upper[self.line()..], 0) - a) * fy;
+            let left = pick(near, offsets);
+            left + (pick(near, offsets + splat_u(1)) - left) * fx
         };
         V3::new(colour(0), colour(1), colour(2))
     }

@@ -7,6 +7,7 @@ use crate::quality::Quality;
 use crate::sample::{Scratch, TILE, Tile, beams, refine, share_edges, smooth_edges};
 use crate::scene::Scene;
 use crate::{parallel, post};
+use glam::Vec2;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Work on the tile whose upper left pixel is given.
@@ -52,26 +53,58 @@ impl Renderer {
         quality: &Quality,
         pixels: &mut [u32],
     ) {
-        let stage = Stage::new(scene, quality, width, height);
+        let mut stage = Stage::new(scene, quality, width, height);
         let across = (width as usize).div_ceil(TILE);
         let down = (height as usize).div_ceil(TILE);
         self.tiles.resize_with(across * down, Tile::default);
         let pool = &self.scratch;
         let passes: [Pass; 3] = [refine, smooth_edges, beams];
         self.counters = Counters::default();
-        for pass in passes {
-            parallel::each(self.tiles.iter_mut(), |i, tile| {
-                let mut scratch = pool.take();
-                scratch.counters = Counters::default();
-                pass(&stage, &mut scratch, (i % across * TILE, i / across * TILE), tile);
-                tile.counters = scratch.counters;
-                pool.give(scratch);
-            });
-            share_edges(&mut self.tiles, across);
-            for tile in &self.tiles {
-                self.counters.merge(&tile.counters);
+        let mut sums = Vec::new();
+        for pattern in 0..quality.average {
+            (stage.pattern, stage.shift) = (pattern, shift(pattern));
+            for pass in passes {
+                parallel::each(self.tiles.iter_mut(), |i, tile| {
+                    let mut scratch = pool.take();
+                    scratch.counters = Counters::default();
+                    pass(&stage, &mut scratch, (i % across * TILE, i / across * TILE), tile);
+                    tile.counters = scratch.counters;
+                    pool.give(scratch);
+                });
+                share_edges(&mut self.tiles, across);
+                for tile in &self.tiles {
+                    self.counters.merge(&tile.counters);
+                }
+            }
+            if quality.average > 1 {
+                average(&mut self.tiles, &mut sums, pattern + 1);
             }
         }
         self.counters.merge(&post::finish(&stage, &self.tiles, &mut self.bloom, n, pixels));
+    }
+}
+
+/// Where pattern `k` moves the samples: points of the R2 sequence about the middle of a pixel, the
+/// first of which is the middle itself.
+fn shift(k: u32) -> Vec2 {
+    let offset = |step: f32| {
+        let x = 0.5 + k as f32 * step;
+        x - x.floor() - 0.5
+    };
+    Vec2::new(offset(0.754_877_7), offset(0.569_840_3))
+}
+
+/// Adds the light of the tiles to `sums`, and puts the mean of all `count` so far in its place.
+fn average(tiles: &mut [Tile], sums: &mut Vec<f32>, count: u32) {
+    let share = 1.0 / count as f32;
+    sums.resize(tiles.len() * 3 * TILE * TILE, 0.0);
+    for (k, tile) in tiles.iter_mut().enumerate() {
+        for (i, plane) in tile.rgb.iter_mut().enumerate() {
+            let sums = &mut sums[(3 * k + i) * TILE * TILE..];
+            for (light, sum) in plane.iter_mut().zip(sums) {
+                *sum += *light;
+                *light = *sum * share;
+            }
+        }
     }
 }

@@ -20,6 +20,10 @@ pub struct Stage<'a> {
     pub width: u32,
     /// Height of the picture, px.
     pub height: u32,
+    /// Which sample pattern of a still that averages several.
+    pub pattern: u32,
+    /// By how much that pattern moves all positions in the picture, px.
+    pub shift: Vec2,
     /// The eye.
     pub view: View,
     /// Width of a pixel on the plane one unit ahead of the eye.
@@ -70,6 +74,8 @@ impl<'a> Stage<'a> {
             quality: *quality,
             width,
             height,
+            pattern: 0,
+            shift: Vec2::ZERO,
             pixel,
             dops: dops(scene, &view),
             nodes: field_nodes(scene, &view),
@@ -92,7 +98,8 @@ impl<'a> Stage<'a> {
     /// px right and down from its corner.
     pub fn on_screen(&self, x: f32, y: f32) -> Vec2 {
         let Vec2 { x: cx, y: cy } = Vec2::new(self.width as f32, self.height as f32) * 0.5;
-        Vec2::new((x - cx) * self.pixel, (cy - y) * self.pixel)
+        let Vec2 { x: right, y: down } = self.shift;
+        Vec2::new((x + right - cx) * self.pixel, (cy - y - down) * self.pixel)
     }
 
     /// Unit direction of the ray through a position in the picture.
@@ -105,8 +112,8 @@ impl<'a> Stage<'a> {
     pub fn directions(&self, x: F, y: F) -> V3 {
         let [right, up, forward] = self.view.world_from_view.to_cols_array_2d().map(|c| V3::splat(c.into()));
         let pixel = splat(self.pixel);
-        let x = (x - splat(self.width as f32 * 0.5)) * pixel;
-        let y = (splat(self.height as f32 * 0.5) - y) * pixel;
+        let x = (x + splat(self.shift.x) - splat(self.width as f32 * 0.5)) * pixel;
+        let y = (splat(self.height as f32 * 0.5) - y - splat(self.shift.y)) * pixel;
         (right * x + up * y + forward).normalize()
     }
 

@@ -6,7 +6,9 @@
 
 use super::block::Sample;
 use super::refine::{Cell, Corners};
+use super::scatter;
 use super::tile::{Kind, Record, TILE, Tile};
+use super::wave::soft;
 use crate::counters::{Counter, Counters};
 use crate::features;
 use crate::math::lanes::{F, LANE_INDEX, U, V3, splat, splat_u};
@@ -27,8 +29,7 @@ impl Patch {
     #[inline(never)]
     fn of(known: &Corners, value: fn(Sample) -> Vec3) -> Patch {
         let [a, b, c, d] = known.corners.map(value);
-        let mean = (a + b + c + d) * 0.25;
-        let bump = known.centre.map_or(Vec3::ZERO, |s| (value(s) - mean) * 16.0);
+        let bump = (value(known.centre) - known.mean(value)) * 16.0;
         Patch([a, b, c, d, bump])
     }
 
@@ -51,8 +52,7 @@ pub(super) fn fill(
     counters: &mut Counters,
 ) {
     let first = known.corners[0];
-    let same = |s: &Sample| (s.display() - first.display()).abs().max_element() <= SAME;
-    let equal = known.corners[1..].iter().chain(&known.centre).all(same);
+    let equal = known.agree_within(SAME);
     let kind = if equal { Kind::Filled } else { Kind::Interpolated };
     let counter = if equal { Counter::Filled } else { Counter::Interpolated };
     let count = cell.size * cell.size;
@@ -166,7 +166,7 @@ fn known_surface(stage: &Stage, first: Sample, px: F, py: F, counters: &mut Coun
     let light = if first.id() <= NONE {
         counters.add(Counter::DiscTests, 8 * stage.scene.background.discs.len());
         counters.add(Counter::Glows, 8 * stage.scene.background.glows.len());
-        shade::background(&stage.scene.background, &rays, spread).0
+        shade::background(&stage.scene.background, &rays, spread, soft(stage, spread), F::ZERO).0
     } else {
         let s = surface(stage.scene, &stage.quality, &rays, t, splat(first.id()), spread);
         s.count(counters);
@@ -174,14 +174,9 @@ fn known_surface(stage: &Stage, first: Sample, px: F, py: F, counters: &mut Coun
         let view = -rays.direction;
         let all = F::ZERO.simd_gt(splat(-1.0));
         let lit = shade::direct(stage, &s, view, all, Visibility::Known, &mut codes, counters);
-        let local = shade::local(
-            stage,
-            &s,
-            &shade::split(stage.scene.shading, &s, rays.direction),
-            lit,
-            all,
-            counters,
-        );
+        let split = shade::split(stage.scene.shading, &s, rays.direction);
+        let bounces = scatter::bounces(stage, splat_u(0), &s, 0);
+        let local = shade::local(stage, &s, &split, lit, (all, bounces), counters);
         local.irradiance * s.colour(Channel::Colour) + local.rest
     };
     match &stage.scene.fog {

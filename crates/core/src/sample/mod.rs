@@ -10,11 +10,13 @@ mod edges;
 mod interpolate;
 mod rays;
 mod refine;
+mod scatter;
 mod tile;
 mod wave;
 
 pub use beams::beams;
 pub use edges::smooth_edges;
 pub use refine::refine;
+pub use scatter::ROUGH;
 pub use tile::{Kind, Record, TILE, Tile, share_edges};
 pub use wave::Scratch;

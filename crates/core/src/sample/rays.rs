@@ -1,6 +1,6 @@
 //! Lists of rays on their way to samples, in packets of eight.
 
-use crate::math::lanes::{F, V3};
+use crate::math::lanes::{F, U, V3};
 use crate::trace::Rays8;
 
 /// Eight rays and what their light is for.
@@ -12,6 +12,8 @@ pub struct Packet {
     pub weight: V3,
     /// Width of the footprint per unit of distance.
     pub spread: F,
+    /// Random bits, and how the rays came about: see [`super::scatter`].
+    pub seed: U,
     /// Indices of the samples the rays belong to.
     pub samples: [u32; 8],
 }
@@ -39,11 +41,12 @@ impl RayList {
         if at == 0 {
             self.packets.push(*from);
         }
-        if let Some(Packet { rays, weight, spread, samples }) = self.packets.last_mut() {
+        if let Some(Packet { rays, weight, spread, seed, samples }) = self.packets.last_mut() {
             rays.origin.set_lane(at, from.rays.origin.lane(lane));
             rays.direction.set_lane(at, from.rays.direction.lane(lane));
             weight.set_lane(at, from.weight.lane(lane));
             spread.as_mut_array()[at] = from.spread.as_array()[lane & 7];
+            seed.as_mut_array()[at] = from.seed.as_array()[lane & 7];
             samples[at] = sample;
         }
         self.count += 1;

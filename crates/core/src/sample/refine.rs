@@ -15,12 +15,13 @@ use super::interpolate::fill;
 use super::tile::{GRID, Kind, Record, TILE, Tile};
 use super::wave::{Position, Scratch, trace};
 use crate::counters::{Counter, Counters};
-use crate::cull::{Region, may_cover, occluders};
+use crate::cull::{Bounds, Region, may_cover, occluders};
+use crate::math::lanes::F;
 use crate::quality::Rung;
 use crate::render::Stage;
 use crate::shade::MAX_LAMPS;
 use crate::trace::{BLOCKED, Shape};
-use glam::Vec2;
+use glam::{Vec2, Vec3};
 
 /// A square between samples; `x`, `y` from the tile's corner, px.
 #[derive(Clone, Copy)]
@@ -35,25 +36,15 @@ pub(super) struct Corners<'a> {
     /// Side of the cell, px.
     pub size: usize,
     pub corners: [Sample<'a>; 4],
-    pub centre: Option<Sample<'a>>,
+    pub centre: Sample<'a>,
 }
 
 impl Cell {
-    fn points(self) -> [(usize, usize); 4] {
-        let Cell { x, y, size } = self;
-        [(x, y), (x + size, y), (x, y + size), (x + size, y + size)]
-    }
-
-    /// The sample in the middle, which is a corner of the children.
-    fn middle(self, stage: &Stage) -> Option<(usize, usize)> {
-        let half = self.size / 2;
-        (half > 0 && stage.quality.centre).then_some((self.x + half, self.y + half))
-    }
-
-    fn children(self) -> [Cell; 4] {
-        let size = self.size / 2;
-        let Cell { x, y, .. } = self;
-        [(x, y), (x + size, y), (x, y + size), (x + size, y + size)].map(|(x, y)| Cell { x, y, size })
+    /// Where sample `i` is: the corners in reading order, then the middle, which is a corner of the
+    /// children, and in a cell of one pixel the first corner again.
+    fn point(self, i: usize) -> (usize, usize) {
+        let (size, i) = if i < 4 { (self.size, i) } else { (self.size / 2, 3) };
+        (self.x + (i & 1) * size, self.y + (i >> 1) * size)
     }
 }
 
@@ -76,31 +67,35 @@ pub fn refine(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize), tile
     scratch.grid.resize(GRID * GRID, u32::MAX);
 
     let mut cells = Vec::new();
-    for y in (0..height).step_by(cell) {
-        cells.extend((0..width).step_by(cell).map(|x| Cell { x, y, size: cell }));
+    let along = |end: usize| (0..TILE).map(|i| i * cell).take_while(move |x| *x < end);
+    for y in along(height) {
+        for x in along(width) {
+            cells.push(Cell { x, y, size: cell });
+        }
     }
     tile.edges = [[false; GRID]; GRID];
-    let mut first = true;
-    while !cells.is_empty() {
-        sample(stage, scratch, &cells, corner, around.shapes);
-        if first {
+    let mut done = 0;
+    // Level by level: the cells of the next one are appended.
+    while done < cells.len() {
+        let level = done..cells.len();
+        sample(stage, scratch, &cells[level.clone()], corner, around.shapes);
+        if done == 0 {
             around.shadows = shadow_casters(stage, &scratch.samples);
-            first = false;
         }
-        let mut next = Vec::new();
-        for &cell in &cells {
-            let at = |(x, y): (usize, usize)| scratch.samples.get(scratch.grid[y * GRID + x] as usize);
-            let known = Corners {
-                size: cell.size,
-                corners: cell.points().map(at),
-                centre: cell.middle(stage).map(at),
+        done = level.end;
+        for i in level {
+            let cell = cells[i];
+            let at = |i: usize| {
+                let (x, y) = cell.point(i);
+                scratch.samples.get(scratch.grid[y * GRID + x] as usize)
             };
+            let known = Corners { size: cell.size, corners: std::array::from_fn(at), centre: at(4) };
             if cell.size == 1 {
                 tile.set(cell.x, cell.y, known.corners[0].colour(), Record::new(Kind::Traced, 1));
                 tile.nearness[cell.y * TILE + cell.x] = 1.0 / known.corners[0].depth();
                 scratch.counters.add(Counter::Traced, 1);
                 if known.is_edge(stage) {
-                    for (x, y) in cell.points() {
+                    for (x, y) in (0..4).map(|i| cell.point(i)) {
                         tile.edges[y][x] = true;
                     }
                 }
@@ -110,10 +105,14 @@ pub fn refine(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize), tile
             {
                 fill(stage, corner, cell, &known, tile, &mut scratch.counters);
             } else {
-                next.extend(cell.children().into_iter().filter(|c| c.x < width && c.y < height));
+                let half = Cell { size: cell.size / 2, ..cell };
+                for (x, y) in (0..4).map(|i| half.point(i)) {
+                    if x < width && y < height {
+                        cells.push(Cell { x, y, ..half });
+                    }
+                }
             }
         }
-        cells = next;
     }
 }
 
@@ -123,7 +122,7 @@ fn sample(stage: &Stage, scratch: &mut Scratch, cells: &[Cell], corner: (usize, 
     let mut missing: Vec<Position> = Vec::new();
     let before = scratch.samples.0.len() * 8;
     for cell in cells {
-        for (x, y) in cell.points().into_iter().chain(cell.middle(stage)) {
+        for (x, y) in (0..5).map(|i| cell.point(i)) {
             let slot = &mut scratch.grid[y * GRID + x];
             if *slot == u32::MAX {
                 *slot = (before + missing.len()) as u32;
@@ -137,10 +136,11 @@ fn sample(stage: &Stage, scratch: &mut Scratch, cells: &[Cell], corner: (usize, 
 /// Shapes that may cast a shadow on any surface between `samples`, per lamp.
 fn shadow_casters(stage: &Stage, samples: &Samples) -> [u64; MAX_LAMPS] {
     let mut masks = [0; MAX_LAMPS];
-    let hits =
-        || (0..samples.0.len() * 8).map(|i| samples.get(i)).filter(|s| s.id() >= 0.0).map(|s| s.point());
-    let Some(some) = hits().next() else { return masks };
-    let (lo, hi) = hits().fold((some, some), |(lo, hi), p| (lo.min(p), hi.max(p)));
+    let mut bounds = Bounds::EMPTY;
+    for block in &samples.0 {
+        bounds.add(block.point, block.id.simd_ge(F::ZERO));
+    }
+    let Some((lo, hi)) = bounds.corners() else { return masks };
     // Curved patches bulge a little out of the box of their corners.
     let region = Region::cuboid(lo, hi, 0.02 * (hi - lo).length());
     for (mask, shafts) in masks.iter_mut().zip(&stage.shafts) {
@@ -152,13 +152,13 @@ fn shadow_casters(stage: &Stage, samples: &Samples) -> [u64; MAX_LAMPS] {
 impl Corners<'_> {
     /// Whether all samples agree with the first in a property.
     fn all(&self, like: impl Fn(Sample, Sample) -> bool) -> bool {
-        let first = self.corners[0];
-        self.corners[1..].iter().chain(&self.centre).all(|&s| like(s, first))
+        let [first, a, b, c] = self.corners;
+        [a, b, c, self.centre].iter().all(|&s| like(s, first))
     }
 
     /// Whether some sample has a property.
     fn any(&self, property: impl Fn(Sample) -> bool) -> bool {
-        self.corners.iter().chain(&self.centre).any(|&s| property(s))
+        !self.all(|s, _| !property(s)) || property(self.corners[0])
     }
 
     /// Whether all samples saw the same surface from about the same side, by the same lamps.
@@ -175,27 +175,33 @@ impl Corners<'_> {
 
     /// Whether what the samples saw differs visibly.
     fn is_edge(&self, stage: &Stage) -> bool {
-        let limit = 2.0 * stage.quality.tolerance;
-        let contrast = |s: Sample, first: Sample| (s.display() - first.display()).abs().max_element();
         let alike = self.same_surface() && self.same_signature();
-        !alike && !self.all(|s, first| contrast(s, first) <= limit)
+        !alike && !self.agree_within(2.0 * stage.quality.tolerance)
     }
 
-    /// Largest error of the bilinear display value at the centre; without a centre sample, the
-    /// corners' span.
+    /// Whether all display values are within `limit` of the first.
+    #[inline(never)]
+    pub fn agree_within(&self, limit: f32) -> bool {
+        self.all(|s, first| (s.display() - first.display()).abs().max_element() <= limit)
+    }
+
+    /// Mean of a value at the corners.
+    #[inline(never)]
+    pub fn mean(&self, value: fn(Sample) -> Vec3) -> Vec3 {
+        let [a, b, c, d] = self.corners.map(value);
+        (a + b + c + d) * 0.25
+    }
+
+    /// Largest error of the bilinear display value at the centre.
+    #[inline(never)]
     pub fn colour_error(&self) -> f32 {
-        let [a, b, c, d] = self.corners.map(|s| s.display());
-        let error = match self.centre {
-            Some(centre) => ((a + b + c + d) * 0.25 - centre.display()).abs(),
-            None => a.max(b).max(c.max(d)) - a.min(b).min(c.min(d)),
-        };
-        error.max_element()
+        (self.mean(|s| s.display()) - self.centre.display()).abs().max_element()
     }
 
     /// Whether the bilinear value at the centre is within tolerance of the true one; within a
     /// quarter of it where mirrors or glass show different things at the samples.
     ///
-    /// Written so that NaN refines. Without a centre sample the corners must be this close.
+    /// Written so that NaN refines.
     #[inline(never)]
     fn smooth(&self, stage: &Stage) -> bool {
         if !self.same_surface() {
@@ -209,17 +215,16 @@ impl Corners<'_> {
         }
         let same = self.same_signature();
         let tolerance = stage.quality.tolerance * if same { 1.0 } else { 0.25 };
-        let error = match self.centre {
-            Some(centre) if stage.rung(centre.id()) == Rung::Surface => {
-                let [a, b, c, d] = self.corners.map(|s| s.indirect());
-                let predicted = stage.display.map(centre.direct() + (a + b + c + d) * 0.25);
-                let error = (predicted - centre.display()).abs().max_element();
-                // One corner in the mirror image of a lamp makes the mean white, right or wrong.
-                if same { error } else { error.max(self.colour_error()) }
+        let mut error = 0.0;
+        if stage.rung(self.centre.id()) == Rung::Surface {
+            let predicted = stage.display.map(self.centre.direct() + self.mean(|s| s.indirect()));
+            error = (predicted - self.centre.display()).abs().max_element();
+            if same {
+                return error <= tolerance;
             }
-            _ => self.colour_error(),
-        };
-        error <= tolerance
+        }
+        // One corner in the mirror image of a lamp makes the mean white, right or wrong.
+        error.max(self.colour_error()) <= tolerance
     }
 }
 

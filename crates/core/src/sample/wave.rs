@@ -6,13 +6,14 @@
 
 use super::block::{Block, Samples};
 use super::rays::{Packet, RayList};
+use super::scatter::{self, Way};
 use crate::counters::{Counter, Counters};
-use crate::cull::{Region, occluders};
+use crate::cull::{Bounds, Region, occluders};
 use crate::features;
 use crate::math::hash::mix_x8;
 use crate::math::lanes::{F, U, V3, splat};
 use crate::render::Stage;
-use crate::scene::Channel;
+use crate::scene::{Channel, Shading};
 use crate::shade::{self, MAX_LAMPS, Visibility};
 use crate::trace::{Hits, NONE, Rays8, nearest, surface};
 use glam::Vec3;
@@ -34,7 +35,7 @@ pub struct Scratch {
 
 /// Bounds of the hit points of each shape in a list of rays, lane by lane.
 #[derive(Default)]
-struct Boxes(Vec<(f32, V3, V3)>);
+struct Boxes(Vec<(f32, Bounds)>);
 
 impl Boxes {
     /// Adds the points of a packet's hits; shapes from number `facets` on are facets of meshes.
@@ -50,29 +51,23 @@ impl Boxes {
             let found = self.0.iter().position(|b| b.0 == shape);
             let at = found.unwrap_or(self.0.len());
             if found.is_none() {
-                let (lo, hi) = (splat(f32::INFINITY), splat(f32::NEG_INFINITY));
-                self.0.push((shape, V3::new(lo, lo, lo), V3::new(hi, hi, hi)));
+                self.0.push((shape, Bounds::EMPTY));
             }
-            let (_, lo, hi) = &mut self.0[at];
-            let low = |old: F, p: F| old.fast_min(own.select(p, old));
-            let high = |old: F, p: F| old.fast_max(own.select(p, old));
-            *lo = V3::new(low(lo.x, points.x), low(lo.y, points.y), low(lo.z, points.z));
-            *hi = V3::new(high(hi.x, points.x), high(hi.y, points.y), high(hi.z, points.z));
+            self.0[at].1.add(points, own);
         }
     }
 
     /// Candidate occluders of each lamp for all the points.
     fn candidates(&self, stage: &Stage) -> [u64; MAX_LAMPS] {
         let mut masks = [0; MAX_LAMPS];
-        for &(shape, lo, hi) in &self.0 {
-            let fold = |v: V3, f: fn(Vec3, Vec3) -> Vec3| (1..8).fold(v.lane(0), |m, i| f(m, v.lane(i)));
-            let (lo, hi) = (fold(lo, Vec3::min), fold(hi, Vec3::max));
+        for (shape, bounds) in &self.0 {
+            let Some((lo, hi)) = bounds.corners() else { continue };
             // Shadow rays start at the points as put back onto the surface, a clearance off.
             let reach = lo.abs().max(hi.abs()).length() + stage.scene.camera.position.length();
             let off = if stage.scene.fields.is_empty() { 0.0 } else { 4.0 * stage.quality.epsilon };
             let region = Region::cuboid(lo, hi, 4e-6 * reach + off);
             for (mask, shafts) in masks.iter_mut().zip(&stage.shafts) {
-                *mask |= occluders(stage.scene, shafts, !*mask, Some(shape as usize), &region);
+                *mask |= occluders(stage.scene, shafts, !*mask, Some(*shape as usize), &region);
             }
         }
         masks
@@ -104,6 +99,7 @@ pub fn trace(stage: &Stage, scratch: &mut Scratch, positions: &[Position], candi
             rays: Rays8 { origin: V3::splat(stage.scene.camera.position), direction: stage.directions(x, y) },
             weight: V3::splat(Vec3::ONE),
             spread: splat(stage.pixel),
+            seed: scatter::seed(x, y),
             samples: std::array::from_fn(|i| (8 * (first + k) + i) as u32),
         });
     }
@@ -124,6 +120,15 @@ pub fn trace(stage: &Stage, scratch: &mut Scratch, positions: &[Position], candi
 
 /// A position in the picture, px from its left and upper edges.
 pub type Position = (f32, f32);
+
+/// Inverse sharpness of what rays with this footprint see of the sky's glows: the variance of a box.
+pub(super) fn soft(stage: &Stage, spread: F) -> F {
+    if features::GGX && stage.scene.shading == Shading::Ggx {
+        spread * spread * splat(1.0 / 12.0)
+    } else {
+        F::ZERO
+    }
+}
 
 /// Traces `scratch.rays`, adds what they find to their samples, and appends what goes on from
 /// there to `scratch.next`.
@@ -156,13 +161,15 @@ fn step(stage: &Stage, scratch: &mut Scratch, candidates: u64, level: u32) {
             found.block.direct = found.block.colour;
             samples.0.push(found.block);
         } else {
+            // What drawn rays meet differs from sample to sample.
+            let drawn = scatter::drawn(packet).to_bitmask();
             for (lane, &owner) in owners.iter().enumerate() {
                 // Two hits deep for all, three for what is seen through glass.
                 let id = samples.get(owner as usize).id();
                 let shape = id.max(0.0) as usize >> 2;
                 let glass = id >= 0.0 && stage.bits.get(shape).is_some_and(|&bit| bit > 0.0);
                 let deep = level == 1 || (level == 2 && glass);
-                let hash = deep.then_some(hash.as_array()[lane]);
+                let hash = (deep && drawn >> lane & 1 == 0).then_some(hash.as_array()[lane]);
                 samples.add(owner as usize, found.block.colour.lane(lane), hash);
             }
         }
@@ -182,6 +189,8 @@ struct Found {
     part: F,
     /// Mirrored and refracted rays, which go on from the hits.
     onward: [Packet; 2],
+    /// Rays that were drawn at random, before those.
+    drawn: Vec<Way>,
 }
 
 /// Light that the rays of a packet find at their hits, and the rays that go on from there.
@@ -196,8 +205,8 @@ fn shade_packet(
     counters: &mut Counters,
 ) {
     let scene = stage.scene;
-    let Packet { rays, spread, .. } = packet;
-    let spread = *spread;
+    let Packet { rays, spread, seed, .. } = packet;
+    let (spread, scattered, drawn) = (*spread, scatter::scattered(packet), scatter::drawn(packet));
     let zero = V3::ZERO;
     let mut weight = packet.weight;
     let mut light = zero;
@@ -216,11 +225,11 @@ fn shade_packet(
             light += packet.weight * shade::beam(beam, rays, spread, hit.t);
         }
     }
-    if level > 0 && !scene.emitters.is_empty() {
+    if level > 0 && !scene.emitters.is_empty() && !scattered.all() {
         counters.add(Counter::EmitterTests, 8 * scene.emitters.len());
         let (shine, hidden, seen) = shade::emitters(&scene.emitters, rays, spread, hit.t);
-        light += weight * shine;
-        weight = weight * (F::ONE - hidden);
+        light += (weight * shine) & !scattered;
+        weight = weight * (F::ONE - (hidden & !scattered));
         signature = seen;
     }
 
@@ -229,18 +238,19 @@ fn shade_packet(
     if !solid.all() {
         counters.add(Counter::DiscTests, 8 * scene.background.discs.len());
         counters.add(Counter::Glows, 8 * scene.background.glows.len());
-        let (sky, seen) = shade::background(&scene.background, rays, spread);
+        let (sky, seen) = shade::background(&scene.background, rays, spread, soft(stage, spread), scattered);
         light += (weight * sky) & !solid;
         id = solid.select(id, seen);
     }
     if level > 0 {
         // What a rough mirror sees far off dissolves into the mean light around it.
         let width = spread * hit.t - splat(BLUR_FROM);
-        let blur = (width * splat(BLUR_GAIN)).fast_max(F::ZERO).fast_min(F::ONE) & solid;
+        let blur = (width * splat(BLUR_GAIN)).fast_max(F::ZERO).fast_min(F::ONE) & (solid & !drawn);
         light += weight * shade::ambient(stage, rays.direction) * blur;
         weight = weight * (F::ONE - blur);
     }
-    let Found { block, part, onward } = found;
+    let Found { block, part, onward, drawn: ways } = found;
+    ways.clear();
     *part = F::ZERO;
     *block = Block::default();
     block.colour = light;
@@ -254,13 +264,19 @@ fn shade_packet(
     }
 
     let t = solid.select(hit.t, F::ZERO);
-    let s = surface(scene, &stage.quality, rays, t, solid.select(hit.id, splat(NONE)), spread);
+    let mut s = surface(scene, &stage.quality, rays, t, solid.select(hit.id, splat(NONE)), spread);
+    if features::BOUNCES {
+        // Highlights in what a bounce sees would be sparks.
+        let roughness = &mut s.material[Channel::Roughness as usize];
+        *roughness = roughness.fast_max(scattered & F::ONE);
+    }
     s.count(counters);
     let view = -rays.direction;
     let trace = Visibility::Trace(shadows);
     let lit = shade::direct(stage, &s, view, solid, trace, &mut block.codes, counters);
     let split = shade::split(scene.shading, &s, rays.direction);
-    let local = shade::local(stage, &s, &split, lit, solid, counters);
+    let bounces = scatter::bounces(stage, *seed, &s, level) & solid;
+    let local = shade::local(stage, &s, &split, lit, (solid, bounces), counters);
     let seen = weight & solid;
     block.albedo = s.colour(Channel::Colour);
     block.irradiance = seen * local.irradiance;
@@ -278,22 +294,37 @@ fn shade_packet(
     let m = s.value(Channel::Roughness);
     let spread = spread + m * m * splat(6.0);
     let one = V3::splat(Vec3::ONE);
-    let reflected = seen * split.reflectance * s.value(Channel::Reflection);
+    let mut reflected = seen * split.reflectance * s.value(Channel::Reflection);
     let passed = (one - split.reflectance) * s.value(Channel::Transparency);
-    let refracted = (seen & !split.total) * passed * s.colour(Channel::Tint);
-    onward[0].rays = Rays8 { origin: s.point + offset, direction: split.mirrored };
+    let mut refracted = (seen & !split.total) * passed * s.colour(Channel::Tint);
+    let outside = s.point + offset;
+    if bounces.any() {
+        let weight = seen * local.kept * block.albedo;
+        scatter::bounce(stage, &s, outside, (weight, bounces), (packet, level), ways);
+    }
+    let rough = scatter::rough(stage, &s, level) & solid;
+    if rough.any() {
+        let weight = seen * s.value(Channel::Reflection);
+        scatter::mirror(stage, &s, outside, (weight, rough), packet, ways);
+        reflected = reflected & !rough;
+    }
+    let cut = if level == stage.quality.depth { solid } else { scattered & solid };
+    if cut.any() {
+        // Where the chain is cut, the mean light in place of what the rays would find.
+        let mirrored = reflected * shade::ambient(stage, split.mirrored);
+        let through = refracted * shade::ambient(stage, split.refracted);
+        // Lanes without such a ray have no direction either.
+        block.colour += (mirrored & cut) + (through & (cut & !split.total));
+        (reflected, refracted) = (reflected & !cut, refracted & !cut);
+    }
+    onward[0].rays = Rays8 { origin: outside, direction: split.mirrored };
     onward[0].weight = reflected;
+    onward[0].seed = scatter::offspring(*seed, 64);
+    onward[1].seed = scatter::offspring(*seed, 65);
     onward[0].spread = spread;
     onward[1].rays = Rays8 { origin: s.point - offset, direction: split.refracted };
     onward[1].weight = refracted;
     onward[1].spread = spread;
-    if level == stage.quality.depth {
-        // Where the chain is cut, the mean light in place of what the rays would find.
-        let mirrored = reflected * shade::ambient(stage, split.mirrored);
-        let refracted = refracted * shade::ambient(stage, split.refracted);
-        // Lanes without such a ray have no direction either.
-        block.colour += (mirrored & solid) + (refracted & (solid & !split.total));
-    }
 }
 
 impl Found {
@@ -312,6 +343,13 @@ impl Found {
         let cutoff = splat(stage.quality.cutoff / stage.scene.grade.exposure);
         let worth = |w: V3| w.x.fast_max(w.y).fast_max(w.z).simd_gt(cutoff).to_bitmask();
         for (lane, &sample) in owners.iter().enumerate() {
+            for way in self.drawn.iter().filter(|way| way.which >> lane & 1 == 1) {
+                counters.add(way.counter, 1);
+                if way.counter == Counter::RoughRays {
+                    counters.add(Counter::ReflectedRays, 1);
+                }
+                next.push(&way.rays, lane, sample);
+            }
             for (rays, counter) in self.onward.iter().zip([Counter::ReflectedRays, Counter::RefractedRays]) {
                 if worth(rays.weight) >> lane & 1 == 1 {
                     counters.add(counter, 1);

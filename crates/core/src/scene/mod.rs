@@ -130,6 +130,9 @@ pub struct Scene {
     pub beams: Vec<Beam>,
     /// The reflection model for direct light.
     pub shading: Shading,
+    /// Bounces of diffuse light that rays follow where the quality has samples for them, 0 to 3; after
+    /// the last one, or without, the ambient light stands for them.
+    pub bounces: u32,
     /// Light from everywhere below (normal down) and above (normal up), mixed by the normal's y.
     pub ambient: [Vec3; 2],
     /// Haze, if the scene has any.

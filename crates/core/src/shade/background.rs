@@ -20,14 +20,17 @@ fn covered(x: F, half: F, w: F) -> F {
 /// Colour of the background in the direction of rays that hit nothing, and what was hit:
 /// [`NONE`] for the sky, `NONE - 1 - k` for disc k.
 ///
-/// `spread` is the width of a ray's footprint per unit of distance.
+/// `spread` is the width of a ray's footprint per unit of distance. `soft` is the inverse sharpness
+/// that the footprint gives to glows, keeping their light; lanes in `blind` don't see discs.
 #[inline(never)]
-pub fn background(sky: &Background, rays: &Rays8, spread: F) -> (V3, F) {
+pub fn background(sky: &Background, rays: &Rays8, spread: F, soft: F, blind: F) -> (V3, F) {
     let d = rays.direction;
     let mut colour = ramp(&sky.stops, d.y);
     for glow in &sky.glows {
-        let x = (d.dot(V3::splat(glow.direction)) - F::ONE) * splat(glow.sharpness);
-        colour += V3::splat(glow.colour) * exp(x);
+        // Lobes of inverse sharpness a and b blur to one of a + b.
+        let share = F::ONE / (F::ONE + soft * splat(glow.sharpness));
+        let x = (d.dot(V3::splat(glow.direction)) - F::ONE) * splat(glow.sharpness) * share;
+        colour += V3::splat(glow.colour) * share * exp(x);
     }
     let mut id = splat(NONE);
     for (k, disc) in sky.discs.iter().enumerate().rev() {
@@ -36,7 +39,7 @@ pub fn background(sky: &Background, rays: &Rays8, spread: F) -> (V3, F) {
         let t = (c.z - rays.origin.z) / d.z;
         let (x, y) = (rays.origin.x + d.x * t - c.x, rays.origin.y + d.y * t - c.y);
         let share = covered((x * x + y * y).sqrt(), r, spread * t);
-        let share = t.simd_gt(F::ZERO).select(share, F::ZERO);
+        let share = t.simd_gt(F::ZERO).select(share, F::ZERO) & !blind;
         let height = y / (r + r) + splat(0.5);
         let low = V3::splat(disc.low);
         let shine = low + (V3::splat(disc.high) - low) * height.fast_max(F::ZERO).fast_min(F::ONE);

@@ -43,6 +43,8 @@ pub struct Local {
     pub irradiance: V3,
     /// Highlights and the surface's own light.
     pub rest: V3,
+    /// Share of the light that falls in which is not mirrored.
+    pub kept: V3,
 }
 
 /// Mean light from the half space around a unit direction, by its height.
@@ -52,7 +54,7 @@ pub fn ambient(stage: &Stage, direction: V3) -> V3 {
     V3::splat(below) + V3::splat(above - below) * x
 }
 
-/// Adds the light from all around (by the normal's height) and the surface's own to that of the
+/// Adds the light from all around (by the normal's height; in lanes `bounces` rays find it) and the surface's own to that of the
 /// lamps; what a mirror takes away is missing from the diffuse part. Under GGX that is all that
 /// the microfacets reflect: the share that isn't traced is the mean light from there.
 #[inline(never)]
@@ -61,7 +63,7 @@ pub fn local(
     s: &Surface,
     split: &Split,
     lit: Lit,
-    active: F,
+    (active, bounces): (F, F),
     counters: &mut Counters,
 ) -> Local {
     let mut ambient = ambient(stage, s.normal);
@@ -69,6 +71,7 @@ pub fn local(
         let Scene { fields, occlusion, .. } = stage.scene;
         ambient = ambient * ambient_share(fields, *occlusion, s.point, s.normal, active, counters);
     }
+    ambient = ambient & !bounces;
     let mut mirrored = split.reflectance * s.value(Channel::Reflection);
     let mut rest = lit.highlight + s.colour(Channel::Emission);
     if features::GGX && stage.scene.shading == Shading::Ggx {
@@ -76,7 +79,7 @@ pub fn local(
         mirrored = split.reflectance;
     }
     let kept = (V3::splat(Vec3::ONE) - mirrored) * s.value(Channel::Diffuse);
-    Local { irradiance: (lit.irradiance + ambient) * kept, rest }
+    Local { irradiance: (lit.irradiance + ambient) * kept, rest, kept }
 }
 
 /// Phong's highlight (r·v)^n with r·v = 2 (n·l)(n·v) - l·v, over the cosine's weight.

@@ -6,8 +6,11 @@
 
 use super::fresnel::schlick;
 use crate::math::lanes::{F, V3, splat};
+use crate::math::lanes_fn::sin_cos;
+use crate::math::sampling::basis;
 use crate::scene::Channel;
 use crate::trace::Surface;
+use std::f32::consts::TAU;
 
 /// π D of microfacets whose normals have this cosine, and squared sine, to the surface's.
 #[inline(always)]
@@ -17,11 +20,16 @@ fn distribution(sine2: F, cos: F, alpha: F) -> F {
     F::ONE / (q * q)
 }
 
+/// √(α² sin² + cos²): 2 cos / (cos + this) of the facets are seen under a cosine.
+#[inline(always)]
+fn smith(cos: F, alpha: F) -> F {
+    (alpha * alpha * ((F::ONE - cos) * (F::ONE + cos)) + cos * cos).sqrt()
+}
+
 /// V for these cosines; 0 where both are 0. The same both ways, bit for bit.
 #[inline(always)]
 fn visibility(n_l: F, n_v: F, alpha: F) -> F {
-    let smith = |x: F| (alpha * alpha * ((F::ONE - x) * (F::ONE + x)) + x * x).sqrt();
-    let whole = n_l * smith(n_v) + n_v * smith(n_l);
+    let whole = n_l * smith(n_v, alpha) + n_v * smith(n_l, alpha);
     // Cosines under 1e-30 would overflow; the light they bring is nothing.
     whole.simd_gt(F::ZERO) & (splat(0.5) / whole.fast_max(splat(1e-30)))
 }
@@ -43,6 +51,35 @@ pub fn ggx(s: &Surface, l: V3, v: V3) -> V3 {
     let fresnel = schlick(s.colour(Channel::F0), splat(1.0), length * splat(0.5));
     // Straight against the light there is no h.
     (fresnel * s.colour(Channel::Specular) * (d * shown)) & length.simd_gt(F::ZERO)
+}
+
+/// A direction in which a facet that `v` sees mirrors, drawn by a random point, and the factor on
+/// the light from there; 0 where it lies under the surface.
+///
+/// Facets are drawn by their visible area: caps of the sphere (Dupuy and Benyoub 2023, after Heitz
+/// 2018). What is left of the integrand is F G2 / G1.
+#[inline(never)]
+pub fn sample(s: &Surface, v: V3, (x, y): (F, F)) -> (V3, V3) {
+    let n = s.normal;
+    let alpha = s.value(Channel::Roughness);
+    let alpha = (alpha * alpha).fast_max(splat(1e-3));
+    let (a, b) = basis(n);
+    // Normals are bent: the eye may look at the back of one.
+    let n_v = v.dot(n).fast_max(splat(1e-3));
+    // The eye as seen by the facets stretched to a half sphere.
+    let eye = V3::new(v.dot(a) * alpha, v.dot(b) * alpha, n_v).normalize();
+    let z = (F::ONE - y) * (F::ONE + eye.z) - eye.z;
+    let r = ((F::ONE - z) * (F::ONE + z)).fast_max(F::ZERO).sqrt();
+    let (sin, cos) = sin_cos(x * splat(TAU));
+    let facet = V3::new(r * cos, r * sin, z) + eye;
+    let h = (a * (facet.x * alpha) + b * (facet.y * alpha) + n * facet.z.fast_max(F::ZERO)).normalize();
+    let v_h = v.dot(h);
+    let l = (h * (v_h + v_h) - v).normalize();
+    let n_l = n.dot(l);
+    // G2 / G1 = (n·v + s_v) n·l / (n·l s_v + n·v s_l) = 2 V n·l (n·v + s_v).
+    let through = visibility(n_l.fast_max(F::ZERO), n_v, alpha) * n_l * (n_v + smith(n_v, alpha));
+    let weight = schlick(s.colour(Channel::F0), splat(1.0), v_h) * (through + through);
+    (l, weight & n_l.simd_gt(F::ZERO))
 }
 
 #[cfg(test)]

@@ -13,4 +13,5 @@ pub use beam::beam;
 pub use direct::{Codes, Lit, Local, MAX_LAMPS, Visibility, ambient, direct, local};
 pub use fog::fog;
 pub use fresnel::{Split, schlick, split};
+pub use ggx::sample;
 pub use lamps::{Lamp, lamps};

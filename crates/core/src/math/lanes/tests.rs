@@ -101,3 +101,16 @@ fn bits_are_the_same_in_every_build() {
     }
     assert_eq!(hash.value(), 0x2b2931c2efa3837b, "{:#x}", hash.value());
 }
+
+#[test]
+fn pick_takes_the_lanes_asked_for() {
+    let v = F::new([1.0, -0.0, f32::INFINITY, 3.5, f32::MIN_POSITIVE, 6.0, 7.0, 8.0]);
+    for i in 0..16u32 {
+        let index = U::new(core::array::from_fn(|lane| i * (lane as u32 + 1)));
+        let picked = pick(v, index);
+        for lane in 0..LANES {
+            let wanted = v.as_array()[index.as_array()[lane] as usize % LANES];
+            assert_eq!(picked.as_array()[lane].to_bits(), wanted.to_bits(), "lane {lane} of {index:?}");
+        }
+    }
+}

@@ -1,8 +1,8 @@
 //! The box filter shares out all light, at any distance; rays that never meet a disc or rectangle.
 
 use super::*;
-use crate::math::lanes::splat;
-use crate::scene::Disc;
+use crate::math::lanes::{TRUE, splat};
+use crate::scene::{Disc, Glow};
 use crate::trace::check::{Random, packet};
 use glam::Vec3;
 
@@ -53,7 +53,7 @@ fn rays_along_a_disc_or_rectangle_do_not_see_it() {
                 if d.z < 0.0 && z > 5.0 {
                     continue;
                 }
-                let (colour, id) = background(&sky, &rays, splat(spread));
+                let (colour, id) = background(&sky, &rays, splat(spread), F::ZERO, F::ZERO);
                 assert_eq!((colour, id), (V3::ZERO, splat(NONE)), "disc from {z} along {d}");
                 let (light, hidden, seen) = emitters(&[square], &rays, splat(spread), splat(f32::INFINITY));
                 assert_eq!((light, hidden, seen), (V3::ZERO, F::ZERO, F::ZERO), "square from {z} along {d}");
@@ -61,7 +61,36 @@ fn rays_along_a_disc_or_rectangle_do_not_see_it() {
         }
     }
     let ahead = packet(|| (Vec3::ZERO, Vec3::Z));
-    assert_eq!(background(&sky, &ahead, F::ZERO), (V3::splat(Vec3::ONE), splat(NONE - 1.0)));
+    let seen = |blind| background(&sky, &ahead, F::ZERO, F::ZERO, blind);
+    assert_eq!(seen(F::ZERO), (V3::splat(Vec3::ONE), splat(NONE - 1.0)));
+    assert_eq!(seen(TRUE), (V3::ZERO, splat(NONE)), "who is blind to discs sees the sky");
     assert_eq!(emitters(&[square], &ahead, F::ZERO, splat(f32::INFINITY)).1, splat(1.0));
     assert_eq!(emitters(&[square], &ahead, F::ZERO, splat(4.0)).1, F::ZERO, "behind a shape");
+}
+
+/// A wide footprint spreads a glow and keeps its light: the integral of exp(k (c - 1)) over the
+/// sphere is 2 pi (1 - exp(-2k)) / k. Midpoint rule over the height above the glow's middle.
+#[test]
+fn soft_glows_keep_their_light() {
+    let glow = Glow { direction: Vec3::Y, colour: Vec3::ONE, sharpness: 60.0 };
+    let sky = Background { glows: vec![glow], ..Background::default() };
+    let light = |soft: f32| {
+        let steps = 4096;
+        let at = |i: usize| {
+            let c = 1.0 - (i as f32 + 0.5) * 2.0 / steps as f32;
+            Vec3::new(((1.0 - c) * (1.0 + c)).sqrt(), c, 0.0)
+        };
+        let sum: f64 = (0..steps)
+            .step_by(8)
+            .map(|i| {
+                let rays = Rays8 { origin: V3::ZERO, direction: V3::from_fn(|k| at(i + k)) };
+                let (colour, _) = background(&sky, &rays, F::ZERO, splat(soft), F::ZERO);
+                colour.x.to_array().iter().map(|&x| f64::from(x)).sum::<f64>()
+            })
+            .sum();
+        sum * 2.0 / steps as f64 * 60.0
+    };
+    for soft in [0.0, 0.001, 0.02, 0.1] {
+        assert!((light(soft) - 1.0).abs() < 1e-3, "{} at {soft}", light(soft));
+    }
 }

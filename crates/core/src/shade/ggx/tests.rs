@@ -3,11 +3,12 @@
 use super::*;
 use crate::math::check::Worst;
 use crate::math::lanes::FALSE;
+use crate::math::lanes::splat_u;
+use crate::math::sampling::point;
 use crate::math::scalar::sin_cos;
 use crate::scene::Material;
 use crate::trace::check::Random;
 use glam::Vec3;
-use std::f64::consts::{PI, TAU};
 
 /// A surface that faces up.
 fn surface(roughness: f32, f0: Vec3) -> Surface {
@@ -113,7 +114,7 @@ fn the_facets_cover_the_surface_once() {
             let cos = ((1.0 - sine) * (1.0 + sine)).sqrt();
             let d = distribution(splat((sine * sine) as f32), splat(cos as f32), splat(alpha));
             // dω = 2π sin dθ, dθ = sin du / cos.
-            sum += f64::from(d.as_array()[0]) / PI * TAU * sine * sine;
+            sum += f64::from(d.as_array()[0]) * 2.0 * sine * sine;
         }
         sum *= -lowest / f64::from(steps);
         assert!((sum - 1.0).abs() < 1e-3, "{sum} at roughness {roughness}");
@@ -153,4 +154,54 @@ fn no_more_light_out_than_in() {
     // Seen from above at roughness 1 the integral is 1 - ln 2.
     let light = furnace(&surface(1.0, Vec3::ONE), 1.0);
     assert!((light - 0.306_852_8).abs() < 1e-5, "{light}");
+}
+
+/// Drawn directions see all that the integral over the half space sees: in a white surrounding, and
+/// in one that brightens to one side, which tells whether they go where the facets send them.
+#[test]
+fn drawn_directions_find_what_the_integral_finds() {
+    for roughness in [0.25, 0.5, 1.0] {
+        for cos in [1.0, 0.6, 0.2] {
+            let s = surface(roughness, Vec3::new(1.0, 0.3, 0.04));
+            let v = V3::splat(at(cos, 0.0));
+            let around = |l: V3| V3::splat(Vec3::ONE) + V3::new(l.x, l.x, l.x);
+            let (rings, turns) = (512, 512);
+            let mut exact = glam::DVec3::ZERO;
+            for i in 0..rings {
+                // cos = 1 - x², denser where the lobe is narrow.
+                let x = (i as f32 + 0.5) / rings as f32;
+                let c = 1.0 - x * x;
+                for k in (0..turns).step_by(8) {
+                    let turn = |j: usize| (k as f32 + j as f32 + 0.5) * std::f32::consts::TAU / turns as f32;
+                    let l = V3::from_fn(|j| at(c, turn(j)));
+                    let light = ggx(&s, l, v) * (l.y * splat(2.0 * x)) * around(l);
+                    exact += (0..8).map(|j| light.lane(j).as_dvec3()).sum::<glam::DVec3>();
+                }
+            }
+            exact *= 2.0 / f64::from(rings * turns);
+            let mut drawn = glam::DVec3::ZERO;
+            let count = 1 << 15;
+            for i in 0..count {
+                let (l, weight) = sample(&s, v, point(splat_u(5), i));
+                drawn += (weight * around(l)).lane(0).as_dvec3();
+            }
+            drawn /= f64::from(count);
+            let off = (drawn - exact).abs().max_element();
+            assert!(off < 2e-3, "{drawn} {exact} at roughness {roughness}, cosine {cos}");
+        }
+    }
+}
+
+#[test]
+fn drawn_directions_are_unit_vectors_and_factors_at_most_1() {
+    let mut random = Random::new(613);
+    for case in 0..100_000 {
+        let roughness = if random.one_in(4) { 0.0 } else { random.size(-14, 0) };
+        let cos = if random.one_in(8) { -0.01 } else { random.size(-40, 0) };
+        let at = (splat(random.range(0.0, 1.0)), splat(random.range(0.0, 1.0)));
+        let (l, weight) = sample(&surface(roughness, Vec3::ONE), V3::splat(super::tests::at(cos, 1.0)), at);
+        let (l, weight) = (l.lane(0), weight.lane(0));
+        assert!((l.length() - 1.0).abs() < 1e-5, "case {case}: {l}");
+        assert!(weight.min_element() >= 0.0 && weight.max_element() <= 1.00001, "case {case}: {weight}");
+    }
 }

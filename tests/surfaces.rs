@@ -1,0 +1,217 @@
+//! Surfaces under GGX as whole pictures: relief in mirrors, rough mirrors, bounces of diffuse light.
+mod support;
+
+use glam::Vec3;
+use luc_core::counters::Counter;
+use luc_core::plan::Plan;
+use luc_core::quality::Quality;
+use luc_core::render::{Renderer, Stage};
+use luc_core::sample::{Kind, Scratch, Tile, refine};
+use luc_core::scene::*;
+use support::picture::psnr;
+
+const SIZE: (u32, u32) = (320, 180);
+
+fn preset(name: &str) -> Quality {
+    Quality::named(name).expect("a preset's name")
+}
+
+fn render(scene: &Scene, size: (u32, u32), quality: &Quality) -> (Vec<u32>, Renderer) {
+    let mut renderer = Renderer::default();
+    let mut pixels = vec![0; (size.0 * size.1) as usize];
+    renderer.frame(scene, 0, size, quality, &mut pixels);
+    (pixels, renderer)
+}
+
+/// Posts and balls on a wet floor with relief, before a low sun.
+fn shore() -> Scene {
+    let relief = |scale, bump| Texture { scale, bump, ..Texture::NONE };
+    let rough = |colour, roughness, texture| Material {
+        colour,
+        roughness,
+        texture,
+        specular: Vec3::ONE,
+        f0: Vec3::splat(0.05),
+        ..Material::default()
+    };
+    let stop = |y, colour| Stop { y, colour };
+    let direction = Vec3::new(0.1, 0.12, -1.0).normalize();
+    let mut scene = Scene {
+        camera: Camera {
+            position: Vec3::new(-1.0, 1.3, 7.0),
+            target: Vec3::new(0.0, 0.9, 0.0),
+            roll: 0.03,
+            fov: 0.9,
+        },
+        background: Background {
+            stops: vec![
+                stop(-0.1, Vec3::new(0.02, 0.03, 0.06)),
+                stop(0.1, Vec3::new(0.2, 0.25, 0.4)),
+                stop(1.0, Vec3::new(0.02, 0.04, 0.12)),
+            ],
+            glows: vec![Glow { direction, colour: Vec3::new(6.0, 3.0, 1.0), sharpness: 300.0 }],
+            discs: vec![],
+        },
+        planes: vec![Plane { point: Vec3::ZERO, normal: Vec3::Y, reach: 40.0, material: 0 }],
+        materials: vec![
+            Material { reflection: 1.0, ..rough(Vec3::new(0.05, 0.06, 0.08), 0.14, relief(0.9, 0.014)) },
+            Material { f0: Vec3::new(0.3, 0.4, 0.6), ..rough(Vec3::ZERO, 0.3, relief(3.0, 0.02)) },
+            rough(Vec3::new(0.3, 0.3, 0.35), 0.6, relief(2.0, 0.05)),
+        ],
+        lights: vec![Light {
+            position: direction * 50.0,
+            colour: Vec3::new(1.0, 0.7, 0.4) * 2.8 * 2500.0,
+            kind: LightKind::Point,
+        }],
+        shading: Shading::Ggx,
+        ambient: [Vec3::new(0.02, 0.03, 0.05), Vec3::new(0.06, 0.08, 0.15)],
+        ..Scene::default()
+    };
+    for k in 0..6 {
+        let (x, z) = (-2.5 + 1.1 * k as f32, -0.7 * k as f32);
+        scene.cylinders.push(Cylinder::between(Vec3::new(x, 0.0, z), Vec3::new(x, 2.0, z), 0.2, 1));
+        let centre = Vec3::new(x + 0.5, 0.35, z + 1.0);
+        scene.spheres.push(Sphere { centre, radius: 0.35, material: 2, blend: 0.0 });
+    }
+    scene
+}
+
+#[test]
+fn relief_in_mirrors_is_within_40_db_of_every_pixel_traced() {
+    let scene = shore();
+    for size in [SIZE, (640, 360)] {
+        for name in ["medium", "high", "ultra"] {
+            // With one ray a mirror: drawn rays are noise, which is compared elsewhere.
+            let quality = Quality { rough: 0, ..preset(name) };
+            let (adaptive, renderer) = render(&scene, size, &quality);
+            let (full, _) = render(&scene, size, &quality.every_pixel());
+            let db = psnr(&full, &adaptive);
+            let traced = renderer.counters.get(Counter::Traced);
+            println!("{name} {size:?}: {db:.2} dB, {traced} pixels traced");
+            assert!(db >= 40.0, "{name} {size:?}: {db:.2} dB");
+        }
+    }
+}
+
+#[test]
+fn the_plan_names_what_these_surfaces_call_for() {
+    let scene = Scene { bounces: 1, ..shore() };
+    for (name, quality) in Quality::PRESETS {
+        let (_, renderer) = render(&scene, (96, 54), &quality);
+        let plan = Plan::of(&scene, &quality);
+        for counter in
+            [Counter::Ggx, Counter::Bumps, Counter::TextureLookups, Counter::RoughRays, Counter::ScatterRays]
+        {
+            let count = renderer.counters.get(counter);
+            assert_eq!(count > 0, plan.names(counter), "{name}: {counter:?} {count}");
+        }
+        assert_eq!(plan.names(Counter::ScatterRays), quality.scatter > 0, "{name}");
+        assert!(!Plan::of(&shore(), &quality).names(Counter::ScatterRays), "{name}: no bounces asked for");
+    }
+}
+
+/// The linear light in the middle of a picture of `scene`, and of all its traced pixels.
+fn light(scene: &Scene, quality: &Quality) -> (Vec3, Vec<Vec3>) {
+    let stage = Stage::new(scene, quality, 64, 64);
+    let mut tile = Tile::default();
+    refine(&stage, &mut Scratch::default(), (0, 0), &mut tile);
+    let all = (0..64 * 64).map(|i| (i % 64, i / 64));
+    let traced = all.filter(|&(x, y)| tile.record[y * 64 + x].kind() == Kind::Traced);
+    (tile.get(32, 32), traced.map(|(x, y)| tile.get(x, y)).collect())
+}
+
+/// A ball of this material in a white surrounding that also the ambient light is like.
+fn furnace(material: Material) -> Scene {
+    Scene {
+        camera: Camera { position: Vec3::Z * 3.0, target: Vec3::ZERO, roll: 0.0, fov: 0.5 },
+        background: Background { stops: vec![Stop { y: 0.0, colour: Vec3::ONE }], ..Background::default() },
+        spheres: vec![Sphere { centre: Vec3::ZERO, radius: 1.0, material: 0, blend: 0.0 }],
+        materials: vec![material],
+        ambient: [Vec3::ONE; 2],
+        ..Scene::default()
+    }
+}
+
+#[test]
+fn a_white_surrounding_gives_a_surface_its_albedo() {
+    let albedo = Vec3::new(1.0, 0.5, 0.18);
+    for bounces in 0..=3 {
+        let quality = Quality { scatter: 5, ..preset("high").every_pixel() };
+        let scene = Scene { bounces, ..furnace(Material { colour: albedo, ..Material::default() }) };
+        let (middle, all) = light(&scene, &quality);
+        assert!((middle - albedo).abs().max_element() < 1e-5, "{middle} with {bounces} bounces");
+        for c in all {
+            let off = (c - albedo).abs().max_element().min((c - Vec3::ONE).abs().max_element());
+            assert!(off < 1e-5, "neither ball nor sky: {c} with {bounces} bounces");
+        }
+    }
+}
+
+/// Inside a closed shining ball: emission + albedo (emission + albedo (...)), with the sum of the whole
+/// series as ambient light at the end, is that sum, whatever the number of bounces.
+#[test]
+fn a_closed_furnace_is_in_balance_after_any_number_of_bounces() {
+    let albedo = Vec3::new(0.8, 0.5, 0.2);
+    let emission = Vec3::new(0.3, 0.2, 0.1);
+    let balance = emission / (Vec3::ONE - albedo);
+    let material = Material { colour: albedo, emission, ..Material::default() };
+    for bounces in 0..=3 {
+        let mut scene = Scene { bounces, ambient: [balance; 2], ..furnace(material) };
+        scene.camera.position = Vec3::new(0.2, 0.1, 0.3);
+        let quality = Quality { scatter: 3, ..preset("high").every_pixel() };
+        let (_, all) = light(&scene, &quality);
+        assert_eq!(all.len(), 64 * 64);
+        for c in all {
+            assert!((c - balance).abs().max_element() < 1e-5, "{c} for {balance}, {bounces} bounces");
+        }
+    }
+}
+
+#[test]
+fn drawn_mirrors_give_no_more_light_than_comes_in() {
+    for roughness in [0.1, 0.3, 0.8] {
+        let f0 = Vec3::new(1.0, 0.5, 0.04);
+        let metal = Material { diffuse: 0.0, f0, roughness, reflection: 1.0, ..Material::default() };
+        let scene = Scene { shading: Shading::Ggx, ..furnace(metal) };
+        let quality = Quality { rough: 16, ..preset("high").every_pixel() };
+        let (middle, all) = light(&scene, &quality);
+        assert!(all.iter().all(|c| c.max_element() <= 1.0001), "roughness {roughness}");
+        // Facing the eye, next to nothing is lost but by shadowing among facets.
+        let kept = 1.0 - 0.7 * roughness * roughness;
+        assert!((middle - f0).max_element() < 0.03 && middle.x > kept, "{middle} at {roughness}");
+    }
+}
+
+/// Random numbers belong to positions: what a pixel's rays find doesn't depend on the list it is in.
+#[test]
+fn traced_pixels_are_the_same_whatever_else_is_traced() {
+    let scene = Scene { bounces: 2, ..shore() };
+    let ultra = preset("ultra");
+    let tile = |quality: &Quality| {
+        let stage = Stage::new(&scene, quality, SIZE.0, SIZE.1);
+        let mut tile = Tile::default();
+        refine(&stage, &mut Scratch::default(), (128, 64), &mut tile);
+        tile
+    };
+    let (adaptive, full) = (tile(&ultra), tile(&Quality { cull: false, ..ultra.every_pixel() }));
+    let mut traced = 0;
+    for i in (0..64 * 64).filter(|&i| adaptive.record[i].kind() == Kind::Traced) {
+        let (x, y) = (i % 64, i / 64);
+        let (a, b) = (adaptive.get(x, y).to_array(), full.get(x, y).to_array());
+        assert_eq!(a.map(f32::to_bits), b.map(f32::to_bits), "at ({x}, {y})");
+        traced += 1;
+    }
+    assert!(traced > 1000, "{traced}");
+}
+
+#[test]
+fn averaged_patterns_come_closer_to_the_reference() {
+    let scene = Scene { bounces: 1, ..shore() };
+    let quality = Quality { edge_samples: 0, scatter: 2, rough: 2, ..preset("high").every_pixel() };
+    let of = |average: u32| render(&scene, SIZE, &Quality { average, ..quality }).0;
+    let reference = of(96);
+    let ladder: Vec<f64> = [1, 4, 16].map(|k| psnr(&reference, &of(k))).into();
+    println!("{ladder:.2?} dB with 1, 4, 16 patterns");
+    assert!(ladder.windows(2).all(|w| w[1] > w[0] + 3.0), "{ladder:?}");
+    assert_eq!(of(4), of(4));
+}
