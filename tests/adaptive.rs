@@ -41,7 +41,7 @@ fn plain(part: &show::Part, frame: u64) -> Scene {
 }
 
 #[test]
-fn both_parts_are_within_40_db_of_every_pixel_traced() {
+fn every_part_is_within_40_db_of_every_pixel_traced() {
     let quality = preset("high");
     let mut wrong = String::new();
     for part in show::PARTS {

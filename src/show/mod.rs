@@ -6,6 +6,7 @@
 #[allow(dead_code, reason = "a part that is being made")]
 mod facets;
 mod gold;
+mod luc;
 mod mirror;
 mod paint;
 mod still;
@@ -32,6 +33,7 @@ pub struct Part {
 
 /// The parts in playing order.
 pub const PARTS: &[Part] = &[
+    Part { name: "luc", frames: 6 * BAR, scene: luc::scene },
     Part { name: "mirror", frames: 16 * BAR, scene: mirror::scene },
     Part { name: "gold", frames: 16 * BAR, scene: gold::scene },
 ];

@@ -132,11 +132,6 @@ impl<'a> Stage<'a> {
         if vague { Rung::Colour } else { self.quality.rung }
     }
 
-    /// Whether the shape is a field without finite bodies, which can't be bounded.
-    pub fn endless(&self, index: usize) -> bool {
-        matches!(self.scene.shape(index), Shape::Field(f) if f.nodes.iter().all(|n| n.core().is_none()))
-    }
-
     /// Mask of the shapes that may show in the square of `side` px at `corner`, see
     /// [`crate::trace::nearest`].
     #[inline(never)]

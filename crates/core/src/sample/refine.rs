@@ -297,7 +297,8 @@ impl Surroundings {
             let may = occluders(stage.scene, shafts, self.shadows[lamp], Some(own), &region);
             for (i, &bit) in stage.bits.iter().enumerate() {
                 let known_tint = bit > 0.0 && crossed & bit as u32 != 0;
-                let unbounded = matches!(stage.scene.shape(i), Shape::Plane(_)) || stage.endless(i);
+                // The bound of a field is too loose to say that its shadow is near.
+                let unbounded = matches!(stage.scene.shape(i), Shape::Plane(_) | Shape::Field(_));
                 if may >> (i & 63) & 1 == 1 && i != own && !known_tint && !unbounded {
                     return true;
                 }
