@@ -4,6 +4,8 @@
 //! pure function of its local frame, so any frame can be rendered on its own and nothing drifts.
 
 mod blobs;
+#[allow(dead_code, reason = "a part that is being made")]
+mod facets;
 mod gold;
 mod luc;
 mod mirror;

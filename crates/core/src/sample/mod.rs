@@ -7,6 +7,7 @@
 mod beams;
 mod block;
 mod edges;
+mod glint;
 mod interpolate;
 mod rays;
 mod refine;

@@ -14,8 +14,9 @@ use super::block::{Sample, Samples};
 use super::interpolate::fill;
 use super::tile::{GRID, Kind, Record, TILE, Tile};
 use super::wave::{Position, Scratch, trace};
-use crate::counters::Counter;
+use crate::counters::{Counter, Counters};
 use crate::cull::{Bounds, Region, may_cover, occluders};
+use crate::features;
 use crate::math::lanes::F;
 use crate::quality::Rung;
 use crate::render::Stage;
@@ -100,7 +101,8 @@ pub fn refine(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize), tile
                     }
                 }
             } else if cell.size <= stage.quality.smallest as usize
-                || (known.smooth(stage) && !around.may_hide_something(stage, corner, cell, &known))
+                || (known.smooth(stage)
+                    && !around.may_hide_something(stage, corner, cell, &known, &mut scratch.counters))
             {
                 fill(stage, corner, cell, &known, tile, &mut scratch.counters);
             } else {
@@ -230,7 +232,14 @@ impl Corners<'_> {
 impl Surroundings {
     /// Whether a shape, or the shadow of one, may lie between the samples of a cell.
     #[inline(never)]
-    fn may_hide_something(&self, stage: &Stage, corner: (usize, usize), cell: Cell, known: &Corners) -> bool {
+    fn may_hide_something(
+        &self,
+        stage: &Stage,
+        corner: (usize, usize),
+        cell: Cell,
+        known: &Corners,
+        counters: &mut Counters,
+    ) -> bool {
         let id = known.corners[0].id();
         let own = if id >= 0.0 { id as usize >> 2 } else { usize::MAX };
         let half = cell.size as f32 * 0.5;
@@ -254,12 +263,25 @@ impl Surroundings {
                 return true;
             }
         }
+        let meshes = &stage.scene.meshes;
+        let [right, up, forward] = [0, 1, 2].map(|axis| stage.view.world_from_view.col(axis));
+        let towards = |sign: (f32, f32)| {
+            let p = at + reach * Vec2::from(sign);
+            right * p.x + up * p.y + forward
+        };
+        let corners = [(-1.0, 1.0), (1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)].map(towards);
+        if meshes.may_lie_between(stage.view.origin, corners, depths, counters) {
+            return true;
+        }
         if own == usize::MAX {
             return false;
         }
+        if features::FIELDS && known.may_hide_glint(stage, own) {
+            return true;
+        }
         let points = known.corners.map(|s| s.point());
         // Between the corners a curved surface bulges out of their hull.
-        let flat = matches!(stage.scene.shape(own), Shape::Plane(_) | Shape::Triangle(_));
+        let flat = matches!(stage.scene.shape(own), Shape::Plane(_) | Shape::Triangle(_) | Shape::Facet(..));
         let across = (points[3] - points[0]).length().max((points[2] - points[1]).length());
         let region = Region::patch(&points, if flat { 0.0 } else { 0.1 * across });
         let material = &stage.scene.materials[stage.scene.shape(own).material()];
@@ -267,8 +289,12 @@ impl Surroundings {
             let position = stage.lamps[lamp].position;
             let faces = known.corners.iter().any(|s| s.normal().dot(position - s.point()) > 0.0);
             let lit = faces && known.corners.iter().all(|s| s.code(lamp) != BLOCKED);
-            if self.shadows[lamp] == 0 || !lit || !stage.lamps[lamp].lights(material) {
+            if (self.shadows[lamp] == 0 && meshes.is_empty()) || !lit || !stage.lamps[lamp].lights(material) {
                 continue;
+            }
+            let to = points.map(|p| p - position);
+            if meshes.may_lie_between(position, to, [1.0; 4], counters) {
+                return true;
             }
             // A body that already colours the light of all samples is known to be there.
             let crossed = known.corners[0].code(lamp) as u32;
