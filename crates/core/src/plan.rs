@@ -63,7 +63,7 @@ impl Plan {
             (Counter::Bumps, bumps),
             (Counter::FogSegments, scene.fog.is_some()),
             (Counter::Beams, !scene.beams.is_empty()),
-            (Counter::KnownSurfaces, adaptive && known),
+            (Counter::KnownSurfaces, adaptive && known && scene.has_known_surfaces()),
             (Counter::Traced, !adaptive || quality.smallest <= 1),
             (Counter::Interpolated, adaptive),
             (Counter::EdgeSamples, quality.edge_samples.max(quality.samples) > 0),

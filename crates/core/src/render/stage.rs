@@ -123,7 +123,7 @@ impl<'a> Stage<'a> {
     pub fn rung(&self, id: f32) -> Rung {
         let (shape, count) = (id.max(0.0) as usize >> 2, self.scene.shape_count());
         let vague = if id < 0.0 {
-            false
+            !self.scene.has_known_surfaces()
         } else if shape < count {
             shape >= count - self.scene.fields.len()
         } else {

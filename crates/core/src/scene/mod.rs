@@ -144,6 +144,11 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// Whether some shape's surface is known between samples, which that of fields is not.
+    pub fn has_known_surfaces(&self) -> bool {
+        self.shape_count() > self.fields.len() || !self.meshes.is_empty()
+    }
+
     /// Number of shapes of all kinds together; facets of meshes are numbered after them.
     pub fn shape_count(&self) -> usize {
         self.spheres.len()
