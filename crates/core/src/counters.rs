@@ -28,6 +28,7 @@ counters! {
     SphereTests "tests of spheres",
     PlaneTests "tests of planes",
     CylinderTests "tests of cylinders",
+    EndlessTests "tests of cylinders without ends",
     ConeTests "tests of cones",
     TriangleTests "tests of triangles",
     FieldTests "tests of fields",
@@ -54,10 +55,19 @@ counters! {
 }
 
 /// A set of counts; sums are exact, so they do not depend on threads.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Counters {
     #[cfg(feature = "counters")]
     counts: [u64; Counter::ALL.len()],
+}
+
+impl Default for Counters {
+    fn default() -> Self {
+        Counters {
+            #[cfg(feature = "counters")]
+            counts: [0; Counter::ALL.len()],
+        }
+    }
 }
 
 impl Counters {
