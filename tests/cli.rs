@@ -4,6 +4,7 @@ mod support;
 
 use luc::show;
 use luc_core::quality::Quality;
+use luc_core::render::View;
 use std::fs::{read, write};
 use std::io::Read;
 use std::path::Path;
@@ -145,7 +146,8 @@ fn help_and_version_are_told_on_standard_output() {
     let help = run(dir.path(), &["--frame", "3", "--help"]);
     succeeded("--help", &help);
     let text = String::from_utf8(help.stdout).unwrap();
-    let flags = "--frame -o --size --quality --scene --from --once --fullscreen --threads --help --version";
+    let flags =
+        "--frame -o --size --quality --average --scene --from --once --fullscreen --threads --help --version";
     for flag in flags.split(' ') {
         assert!(text.contains(flag), "--help does not name {flag}:\n{text}");
     }
@@ -234,6 +236,24 @@ fn a_still_averages_sample_patterns_on_any_number_of_threads() {
     let fine = with("64", "2");
     let distance = |picture: &[u32]| psnr(&fine, picture);
     assert!(distance(&five) > distance(&with("1", "2")), "more patterns come closer to very many");
+}
+
+#[test]
+fn every_view_writes_a_picture_of_its_own() {
+    let dir = tempdir().unwrap();
+    // The packed file has none, and says so.
+    if std::env::var_os("LUC_BIN").is_some() {
+        let output = run(dir.path(), &["--view", "normal", "--frame", "60", "-o", "-"]);
+        return refused("--view", &output, "--view is left out of this small build");
+    }
+    let mut pictures = vec![frame(60, (64, 36), default_quality())];
+    for (name, _) in View::ALL {
+        let output = run(dir.path(), &["--view", name, "--frame", "60", "--size", "64x36", "-o", "-"]);
+        succeeded(name, &output);
+        let picture = ppm(&output.stdout).2;
+        assert!(!pictures.contains(&picture), "{name} is like another picture");
+        pictures.push(picture);
+    }
 }
 
 #[test]

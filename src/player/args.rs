@@ -6,12 +6,15 @@
 use super::text::{Text, join, number, quoted, whole};
 use luc::show;
 use luc_core::quality::Quality;
+use luc_core::render::View;
 use std::ffi::OsStr;
 
 /// The largest picture, 8K.
 pub const LARGEST: (u32, u32) = (7680, 4320);
 const MOST_THREADS: u64 = 256;
 const MOST_PATTERNS: u64 = 1024;
+/// What the size build says, which draws light only.
+const NO_VIEWS: &[u8] = b"--view is left out of this small build; the ordinary one has it";
 
 /// What the user wants.
 #[derive(Debug, PartialEq)]
@@ -35,6 +38,8 @@ pub struct Options<'a> {
     pub size: (u32, u32),
     /// Index into the presets; without it, the player adapts and a frame takes the default.
     pub quality: Option<usize>,
+    /// Index into the views: draw this instead of light.
+    pub view: Option<usize>,
     /// Sample patterns that a frame averages.
     pub average: u32,
     /// Index of the only part to show.
@@ -56,6 +61,7 @@ pub fn parse<'a>(args: &[&'a OsStr]) -> Result<Request<'a>, Text> {
         output: None,
         size: (1280, 720),
         quality: None,
+        view: None,
         average: 1,
         scene: None,
         once: false,
@@ -111,6 +117,14 @@ pub fn parse<'a>(args: &[&'a OsStr]) -> Result<Request<'a>, Text> {
                     Some(())
                 })?
             }
+            b"--view" if cfg!(luc_size) => return Err(join(&[NO_VIEWS])),
+            b"--view" => {
+                still = b"--view";
+                value(&one_of(&mut views()), &mut |v| {
+                    options.view = Some(views().position(|name| v == name)?);
+                    Some(())
+                })?
+            }
             b"-o" => value(b"a name ending in .png or .ppm, or - for standard output", &mut |v| {
                 still = b"-o";
                 let name = v.as_encoded_bytes();
@@ -131,6 +145,9 @@ pub fn parse<'a>(args: &[&'a OsStr]) -> Result<Request<'a>, Text> {
     if options.frame.is_none() && !still.is_empty() {
         return Err(join(&[still, b" needs --frame N, the frame to write"]));
     }
+    if options.view.is_some() && options.average > 1 {
+        return Err(join(&[b"--average is for light; leave it or --view out"]));
+    }
     if options.frame.is_some() && !windowed.is_empty() {
         return Err(join(&[windowed, b" is for playing in a window; leave it or --frame out"]));
     }
@@ -139,6 +156,10 @@ pub fn parse<'a>(args: &[&'a OsStr]) -> Result<Request<'a>, Text> {
 
 fn qualities() -> impl Iterator<Item = &'static str> {
     Quality::PRESETS.iter().map(|(name, _)| *name)
+}
+
+fn views() -> impl Iterator<Item = &'static str> {
+    View::ALL.iter().map(|(name, _)| *name)
 }
 
 fn scenes() -> impl Iterator<Item = &'static str> {
@@ -165,6 +186,15 @@ fn one_of(names: &mut dyn Iterator<Item = &str>) -> Text {
     out
 }
 
+/// What `--help` says of views, where there are any.
+const VIEW_HELP: &[u8] = if cfg!(luc_size) {
+    b""
+} else {
+    b"  --view NAME      draw a frame's normal, distance (white at 50 units), albedo,
+                   sampling or steps (of its rays, white at 128) instead
+"
+};
+
 /// The text of `--help`.
 pub fn help() -> Text {
     join(&[
@@ -186,6 +216,9 @@ Lúč, a ray-traced intro. Esc or closing the window ends it.
   --scene NAME     only this part, ",
         &one_of(&mut scenes()),
         b"; N counts from its start
+",
+        VIEW_HELP,
+        b"\
   --from N         start playing at frame N, 60 a second
   --once           end instead of looping
   --fullscreen     cover the screen
@@ -240,7 +273,7 @@ mod tests {
         let text = String::from_utf8(help()).unwrap();
         let default = Quality::PRESETS[Quality::DEFAULT].0;
         assert!(text.contains(&["a frame: ", default].concat()), "{text}");
-        assert!(text.len() < 1200, "{} bytes", text.len());
+        assert!(text.len() < 1400, "{} bytes", text.len());
         assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
     }
 
@@ -255,6 +288,9 @@ mod tests {
             (&["--scene", "Mirror"], ", not 'Mirror'"),
             (&["--frame=3"], "'--frame=3' is not an option"),
             (&["-o", "a.png"], "-o needs --frame"),
+            (&["--view", "normal"], "--view needs --frame"),
+            (&["--frame", "1", "--view", "x"], "one of normal distance albedo sampling steps, not 'x'"),
+            (&["--frame", "1", "--view", "normal", "--average", "4"], "--average is for light"),
             (&["--average", "4"], "--average needs --frame"),
             (&["--frame", "1", "--average", "0"], "--average wants a whole number from 1 to 1024, not '0'"),
             (&["--frame", "1", "--fullscreen"], "--fullscreen is for playing"),

@@ -6,7 +6,7 @@ use super::text::{Text, ascii, join};
 use luc::show;
 use luc_core::output::{decimal, png, ppm};
 use luc_core::quality::Quality;
-use luc_core::render::Renderer;
+use luc_core::render::{Renderer, View};
 
 /// Renders frame `n` as the options say and writes it.
 pub fn write(options: &Options, n: u64) -> Result<(), Text> {
@@ -29,7 +29,12 @@ pub fn write(options: &Options, n: u64) -> Result<(), Text> {
     };
     let (_, preset) = Quality::PRESETS[options.quality.unwrap_or(Quality::DEFAULT)];
     let quality = &Quality { average: options.average, ..preset };
-    show::frame(&mut Renderer::default(), n, options.size, quality, &mut pixels);
+    match options.view {
+        Some(view) if cfg!(not(luc_size)) => {
+            View::ALL[view].1.draw(&show::scene(n), show::at(n).1, options.size, quality, &mut pixels);
+        }
+        _ => show::frame(&mut Renderer::default(), n, options.size, quality, &mut pixels),
+    }
 
     let is_png = output.as_encoded_bytes().ends_with(b".png");
     target.write(&if is_png { png(width, height, &pixels) } else { ppm(width, height, &pixels) })

@@ -2,6 +2,8 @@
 
 mod frame;
 mod stage;
+mod view;
 
 pub use frame::Renderer;
 pub use stage::Stage;
+pub use view::{FARTHEST, MOST_STEPS, View};
