@@ -34,6 +34,9 @@ counters! {
     FieldTests "tests of fields",
     FieldSteps "steps to fields",
     FieldOcclusion "ambient occlusion by fields",
+    NodeVisits "nodes of trees",
+    FacetTests "tests of facets",
+    SmoothFacets "facets with interpolated normals",
     EmitterTests "tests of emitters",
     DiscTests "tests of discs",
     Glows "glows in the sky",
@@ -63,7 +66,7 @@ pub struct Counters {
 
 impl Default for Counters {
     fn default() -> Self {
-        Counters {
+        Self {
             #[cfg(feature = "counters")]
             counts: [0; Counter::ALL.len()],
         }

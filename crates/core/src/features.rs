@@ -22,9 +22,13 @@ pub const ENDLESS: bool = cfg!(feature = "endless");
 pub const BOUNCES: bool = cfg!(feature = "bounces");
 /// Mirrors of rough surfaces by several rays.
 pub const ROUGH: bool = cfg!(feature = "rough");
+/// Triangle meshes.
+pub const MESHES: bool = cfg!(feature = "meshes");
+/// Meshes with interpolated normals.
+pub const SMOOTH: bool = cfg!(feature = "smooth");
 
 /// Each feature with the counter that shows it at work.
-pub const ALL: [(&str, Counter); 8] = [
+pub const ALL: [(&str, Counter); 10] = [
     ("ggx", Counter::Ggx),
     ("bumps", Counter::Bumps),
     ("fields", Counter::FieldSteps),
@@ -33,4 +37,6 @@ pub const ALL: [(&str, Counter); 8] = [
     ("endless", Counter::EndlessTests),
     ("bounces", Counter::ScatterRays),
     ("rough", Counter::RoughRays),
+    ("meshes", Counter::NodeVisits),
+    ("smooth", Counter::SmoothFacets),
 ];
