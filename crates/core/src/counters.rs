@@ -28,11 +28,15 @@ counters! {
     SphereTests "tests of spheres",
     PlaneTests "tests of planes",
     CylinderTests "tests of cylinders",
+    EndlessTests "tests of cylinders without ends",
     ConeTests "tests of cones",
     TriangleTests "tests of triangles",
     FieldTests "tests of fields",
     FieldSteps "steps to fields",
     FieldOcclusion "ambient occlusion by fields",
+    NodeVisits "nodes of trees",
+    FacetTests "tests of facets",
+    SmoothFacets "facets with interpolated normals",
     EmitterTests "tests of emitters",
     DiscTests "tests of discs",
     Glows "glows in the sky",
@@ -54,10 +58,19 @@ counters! {
 }
 
 /// A set of counts; sums are exact, so they do not depend on threads.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Counters {
     #[cfg(feature = "counters")]
     counts: [u64; Counter::ALL.len()],
+}
+
+impl Default for Counters {
+    fn default() -> Self {
+        Self {
+            #[cfg(feature = "counters")]
+            counts: [0; Counter::ALL.len()],
+        }
+    }
 }
 
 impl Counters {

@@ -1,6 +1,7 @@
 //! A scene made ready for one frame: what every ray asks for, computed once.
 
 use crate::cull::{Dop, FieldNode, Shaft, View, dops, field_nodes, shafts};
+use crate::features;
 use crate::math::lanes::{F, V3, splat};
 use crate::post::Display;
 use crate::quality::{Quality, Rung};
@@ -39,8 +40,8 @@ pub struct Stage<'a> {
     pub nodes: Vec<FieldNode>,
     /// Bounds of the beams on the screen.
     pub beams: Vec<Dop>,
-    /// Bounds of the shapes as the lamps that cast shadows see them.
-    pub shafts: Vec<Vec<Shaft>>,
+    /// Bounds of the shapes as the lamps that cast shadows see them; see [`Stage::shafts`].
+    shafts: Vec<Shaft>,
     /// From linear light to display values.
     pub display: Display,
 }
@@ -66,7 +67,7 @@ impl<'a> Stage<'a> {
             }
         }
         let lamps = lamps(scene);
-        let shafts = lamps.iter().take(MAX_LAMPS).map(|lamp| shafts(scene, lamp)).collect();
+        let shafts = shafts(scene, &lamps[..lamps.len().min(MAX_LAMPS)]);
         let pixel = 2.0 * scene.camera.half_width() / width as f32;
         Self {
             scene,
@@ -86,6 +87,11 @@ impl<'a> Stage<'a> {
             shafts,
             display: Display::new(&scene.grade),
         }
+    }
+
+    /// Bounds of all shapes for each lamp that casts shadows.
+    pub fn shafts(&self) -> std::slice::Chunks<'_, Shaft> {
+        self.shafts.chunks(self.dops.len().max(1))
     }
 
     /// Unit vector along the view axis.
@@ -117,15 +123,18 @@ impl<'a> Stage<'a> {
     }
 
     /// What is interpolated on the shape with this hit id. Where a field's surface lies between the
-    /// samples is not known without marching: there it is the colour.
+    /// samples is not known without marching, nor that of a curved mesh from one facet: there it is
+    /// the colour.
     pub fn rung(&self, id: f32) -> Rung {
-        let fields = self.scene.shape_count() - self.scene.fields.len();
-        if id >= 0.0 && id as usize >> 2 >= fields { Rung::Colour } else { self.quality.rung }
-    }
-
-    /// Whether the shape is a field without finite bodies, which can't be bounded.
-    pub fn endless(&self, index: usize) -> bool {
-        matches!(self.scene.shape(index), Shape::Field(f) if f.nodes.iter().all(|n| n.core().is_none()))
+        let (shape, count) = (id.max(0.0) as usize >> 2, self.scene.shape_count());
+        let vague = if id < 0.0 {
+            false
+        } else if shape < count {
+            shape >= count - self.scene.fields.len()
+        } else {
+            features::SMOOTH && self.scene.meshes.facet(shape - count).0.mesh().is_smooth()
+        };
+        if vague { Rung::Colour } else { self.quality.rung }
     }
 
     /// Mask of the shapes that may show in the square of `side` px at `corner`, see
