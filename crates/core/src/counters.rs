@@ -41,6 +41,10 @@ counters! {
     CookTorrance "Cook-Torrance highlights",
     Ggx "GGX highlights",
     TextureLookups "texture lookups",
+    Cells "cells of textures",
+    Stripes "stripes of textures",
+    Brick "bricks of textures",
+    Scratches "scratches of textures",
     Bumps "bumps of normals",
     FogSegments "fog segments",
     Beams "rays against beams",
@@ -54,10 +58,19 @@ counters! {
 }
 
 /// A set of counts; sums are exact, so they do not depend on threads.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Counters {
     #[cfg(feature = "counters")]
     counts: [u64; Counter::ALL.len()],
+}
+
+impl Default for Counters {
+    fn default() -> Self {
+        Self {
+            #[cfg(feature = "counters")]
+            counts: [0; Counter::ALL.len()],
+        }
+    }
 }
 
 impl Counters {

@@ -22,8 +22,17 @@ pub const BOUNCES: bool = cfg!(feature = "bounces");
 /// Mirrors of rough surfaces by several rays.
 pub const ROUGH: bool = cfg!(feature = "rough");
 
+/// See [`crate::scene::Pattern::Cells`].
+pub const CELLS: bool = cfg!(feature = "cells");
+/// See [`crate::scene::Pattern::Stripes`].
+pub const STRIPES: bool = cfg!(feature = "stripes");
+/// See [`crate::scene::Pattern::Brick`].
+pub const BRICK: bool = cfg!(feature = "brick");
+/// See [`crate::scene::Pattern::Scratches`].
+pub const SCRATCHES: bool = cfg!(feature = "scratches");
+
 /// Each feature with the counter that shows it at work.
-pub const ALL: [(&str, Counter); 7] = [
+pub const ALL: [(&str, Counter); 11] = [
     ("ggx", Counter::Ggx),
     ("bumps", Counter::Bumps),
     ("fields", Counter::FieldSteps),
@@ -31,4 +40,8 @@ pub const ALL: [(&str, Counter); 7] = [
     ("beams", Counter::Beams),
     ("bounces", Counter::ScatterRays),
     ("rough", Counter::RoughRays),
+    ("cells", Counter::Cells),
+    ("stripes", Counter::Stripes),
+    ("brick", Counter::Brick),
+    ("scratches", Counter::Scratches),
 ];
