@@ -41,7 +41,7 @@ fn plain(part: &show::Part, frame: u64) -> Scene {
 }
 
 #[test]
-fn both_parts_are_within_40_db_of_every_pixel_traced() {
+fn every_part_is_within_40_db_of_every_pixel_traced() {
     let quality = preset("high");
     let mut wrong = String::new();
     for part in show::PARTS {
@@ -144,7 +144,8 @@ fn cross(thing: Thing, backdrop: Backdrop) {
     let replay = format!("crossing::scene(Thing::{thing:?}, Backdrop::{backdrop:?}, FRAME, true)");
     assert!(wrong.is_empty(), "{thing:?} over {backdrop:?} is lost; replay: {replay}{wrong}");
     // The globe fills the middle of the picture only.
-    let enough = if (thing, backdrop) == (Thing::Shadow, Backdrop::Globe) { 15 } else { 54 };
+    let shadow = matches!(thing, Thing::Shadow | Thing::FacetShadow);
+    let enough = if shadow && backdrop == Backdrop::Globe { 15 } else { 54 };
     assert!(seen >= enough, "{thing:?} over {backdrop:?} shows in {seen} frames only");
 }
 
@@ -166,6 +167,21 @@ fn a_ball_of_three_pixels_is_never_lost() {
 #[test]
 fn a_small_triangle_is_never_lost() {
     cross(Thing::Triangle, Backdrop::Wall);
+}
+
+#[test]
+fn a_small_facet_of_a_mesh_is_never_lost() {
+    cross(Thing::Facet, Backdrop::Dark);
+    cross(Thing::Facet, Backdrop::Floor);
+    cross(Thing::Facet, Backdrop::Wall);
+    cross(Thing::Facet, Backdrop::Globe);
+}
+
+#[test]
+fn the_shadow_of_a_small_mesh_is_never_lost() {
+    cross(Thing::FacetShadow, Backdrop::Floor);
+    cross(Thing::FacetShadow, Backdrop::Wall);
+    cross(Thing::FacetShadow, Backdrop::Globe);
 }
 
 #[test]

@@ -1,5 +1,5 @@
-//! Golden frames: the exact pixels of twelve frames over the whole show, kept as PNG files, and the
-//! fingerprints of twelve more in other presets and sizes.
+//! Golden frames: the exact pixels of frames over the whole show, kept as PNG files, and the fingerprints
+//! of others in other presets and sizes.
 //!
 //! A frame that has changed fails with how much, and leaves a picture
 //! `target/golden/NAME.png`: expected, actual, and their difference times eight. If the change is

@@ -5,8 +5,8 @@ mod support;
 
 use std::ops::Range;
 use std::time::{Duration, Instant};
-use support::frame;
 use support::x11::{Player, Screen};
+use support::{frame, golden};
 
 /// Mean difference of two pictures' channels, of 255.
 fn difference(a: &[u32], b: &[u32]) -> f64 {
@@ -21,9 +21,11 @@ fn difference(a: &[u32], b: &[u32]) -> f64 {
     sum as f64 / (3 * a.len()) as f64
 }
 
-/// Which of the draft frames in `range` a window of 320x180 shows.
+/// Which of the draft frames in `range` of the part mirror a window of 320x180 shows.
 fn recognise(pixels: &[u32], range: Range<u64>) -> u64 {
-    let rated = range.clone().map(|n| (difference(pixels, &frame(n, (320, 180), "draft")), n));
+    let rated = range
+        .clone()
+        .map(|n| (difference(pixels, &frame(golden::global("mirror", n), (320, 180), "draft")), n));
     let (error, n) = rated.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap();
     assert!(error < 0.5, "nothing like the frames {range:?}: the nearest, {n}, is {error} levels off");
     n

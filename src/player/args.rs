@@ -213,9 +213,10 @@ Lúč, a ray-traced intro. Esc or closing the window ends it.
         b"
                    (a frame: high; playing: whatever holds 60 frames a second)
   --average K      a frame as the mean of K sample patterns, 1 to 1024 (1)
-  --scene NAME     only this part, ",
+  --scene NAME     only this part, N counts from its start;
+                   ",
         &one_of(&mut scenes()),
-        b"; N counts from its start
+        b"
 ",
         VIEW_HELP,
         b"\

@@ -3,7 +3,10 @@
 //! Time is counted in frames, 60 a second, and beats, 120 a minute: integers. A part's scene is a
 //! pure function of its local frame, so any frame can be rendered on its own and nothing drifts.
 
+#[allow(dead_code, reason = "a part that is being made")]
+mod facets;
 mod gold;
+mod luc;
 mod mirror;
 mod paint;
 mod still;
@@ -30,6 +33,7 @@ pub struct Part {
 
 /// The parts in playing order.
 pub const PARTS: &[Part] = &[
+    Part { name: "luc", frames: 6 * BAR, scene: luc::scene },
     Part { name: "mirror", frames: 16 * BAR, scene: mirror::scene },
     Part { name: "gold", frames: 16 * BAR, scene: gold::scene },
 ];

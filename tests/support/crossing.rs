@@ -1,7 +1,9 @@
 //! Small bright things that cross the picture, to see whether any frame loses one.
 
-use glam::Vec3;
+use glam::{Mat3, Vec3};
+use luc_core::mesh::{Assembly, Instance, Mesh, lathe};
 use luc_core::scene::*;
+use std::sync::Arc;
 
 /// Frames that a crossing takes.
 pub const FRAMES: u32 = 60;
@@ -19,6 +21,10 @@ pub enum Thing {
     Triangle,
     /// A shadow three pixels high, of a ball that is out of the picture.
     Shadow,
+    /// A triangle about four pixels wide, of a mesh.
+    Facet,
+    /// A shadow three pixels high, of a mesh that is out of the picture.
+    FacetShadow,
 }
 
 /// What it crosses in front of.
@@ -107,17 +113,33 @@ pub fn scene(thing: Thing, backdrop: Backdrop, frame: u32, with_thing: bool) -> 
                 .map(|c: [f32; 3]| at + Vec3::from(c) * px),
             material: 0,
         }),
-        Thing::Shadow => {
+        Thing::Facet => {
+            let corners = [[-2.0, -1.5, 0.0], [2.0, -1.0, 1.0], [0.0, 2.0, -1.0]].map(Vec3::from);
+            scene.meshes = place(vec![corners], px, at);
+        }
+        Thing::Shadow | Thing::FacetShadow => {
             // Half way from the lamp to the place that the shadow is to fall on, which is above the
             // picture; so the shadow is twice as wide. The floor is seen at a slant.
             let ground = ground(backdrop, at - EYE);
             let centre = ground + (lamp - ground) * 0.5;
             let slant = if backdrop == Backdrop::Floor { 2.5 } else { 1.0 };
             let radius = 0.75 * slant * PIXEL * (ground - EYE).length();
-            scene.spheres.push(Sphere { centre, radius, material: 0, blend: 0.0 });
+            if thing == Thing::Shadow {
+                scene.spheres.push(Sphere { centre, radius, material: 0, blend: 0.0 });
+            } else {
+                let mut body = Vec::new();
+                lathe(&mut body, &[(Vec3::NEG_Y, 0.0), (Vec3::ZERO, 1.0), (Vec3::Y, 0.0)], 8, 0.1);
+                scene.meshes = place(body, radius, centre);
+            }
         }
     }
     scene
+}
+
+/// One mesh, scaled and moved, of material 0.
+fn place(triangles: Vec<[Vec3; 3]>, scale: f32, at: Vec3) -> Assembly {
+    let mesh = Arc::new(Mesh::flat(triangles));
+    Assembly::new(vec![Instance::new(&mesh, Mat3::from_diagonal(Vec3::splat(scale)), at, 0)])
 }
 
 /// Where the backdrop lies in a direction from the eye.

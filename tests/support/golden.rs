@@ -10,7 +10,10 @@ use std::path::PathBuf;
 pub const SIZE: (u32, u32) = (320, 180);
 
 /// Part and local frame of the kept pictures.
-pub const FRAMES: [(&str, u64); 12] = [
+pub const FRAMES: [(&str, u64); 15] = [
+    ("luc", 36),      // the beam comes out of the dark
+    ("luc", 285),     // the second letter catches fire
+    ("luc", 719),     // last frame: all lit
     ("mirror", 0),    // first frame: all at rest
     ("mirror", 495),  // the ball at its highest
     ("mirror", 600),  // the cone sinks alone
@@ -26,7 +29,10 @@ pub const FRAMES: [(&str, u64); 12] = [
 ];
 
 /// Frames whose fingerprints are kept: part, local frame, preset, size.
-pub const FINGERPRINTS: [(&str, u64, &str, (u32, u32)); 12] = [
+pub const FINGERPRINTS: [(&str, u64, &str, (u32, u32)); 15] = [
+    ("luc", 100, "draft", (333, 187)),
+    ("luc", 400, "medium", (320, 180)),
+    ("luc", 600, "ultra", (320, 180)),
     ("mirror", 37, "draft", (320, 180)),
     ("mirror", 301, "low", (333, 187)),
     ("mirror", 704, "medium", (320, 180)),

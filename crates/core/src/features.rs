@@ -16,11 +16,14 @@ pub const FIELDS: bool = cfg!(feature = "fields");
 pub const FIELD_OCCLUSION: bool = cfg!(feature = "field-occlusion");
 /// Beams of light.
 pub const BEAMS: bool = cfg!(feature = "beams");
-
 /// Bounces of diffuse light.
 pub const BOUNCES: bool = cfg!(feature = "bounces");
 /// Mirrors of rough surfaces by several rays.
 pub const ROUGH: bool = cfg!(feature = "rough");
+/// Triangle meshes.
+pub const MESHES: bool = cfg!(feature = "meshes");
+/// Meshes with interpolated normals.
+pub const SMOOTH: bool = cfg!(feature = "smooth");
 
 /// See [`crate::scene::Pattern::Cells`].
 pub const CELLS: bool = cfg!(feature = "cells");
@@ -32,7 +35,7 @@ pub const BRICK: bool = cfg!(feature = "brick");
 pub const SCRATCHES: bool = cfg!(feature = "scratches");
 
 /// Each feature with the counter that shows it at work.
-pub const ALL: [(&str, Counter); 11] = [
+pub const ALL: [(&str, Counter); 13] = [
     ("ggx", Counter::Ggx),
     ("bumps", Counter::Bumps),
     ("fields", Counter::FieldSteps),
@@ -40,6 +43,8 @@ pub const ALL: [(&str, Counter); 11] = [
     ("beams", Counter::Beams),
     ("bounces", Counter::ScatterRays),
     ("rough", Counter::RoughRays),
+    ("meshes", Counter::NodeVisits),
+    ("smooth", Counter::SmoothFacets),
     ("cells", Counter::Cells),
     ("stripes", Counter::Stripes),
     ("brick", Counter::Brick),

@@ -6,7 +6,8 @@
 //! threads, in debug and release.
 //!
 //! How a frame flows, in the order of the modules: [`scene`] → [`render`] prepares a stage →
-//! [`sample`] decides where to trace → [`trace`] finds what rays hit, with [`cull`] leaving out what
+//! [`sample`] decides where to trace → [`trace`] finds what rays hit
+//! (triangles of a [`mesh`] by its tree, [`bvh`]), with [`cull`] leaving out what
 //! can't matter → [`shade`] lights it → [`post`] makes pixels, [`output`] files. [`math`] has
 //! everything that would differ between machines, [`parallel`] spreads work over threads,
 //! [`counters`] say what a frame did, [`features`] what an executable can do.
@@ -29,10 +30,12 @@
 #![warn(missing_docs)]
 #![forbid(unsafe_code)]
 
+pub mod bvh;
 pub mod counters;
 pub mod cull;
 pub mod features;
 pub mod math;
+pub mod mesh;
 pub mod output;
 pub mod parallel;
 pub mod plan;

@@ -5,6 +5,7 @@
 //! demands 0 of all that its plan doesn't name and more than 0 of all that it names.
 
 use crate::counters::Counter;
+use crate::mesh::Instance;
 use crate::quality::{Quality, Rung};
 use crate::sample::ROUGH;
 use crate::scene::{Field, LightKind, Material, Pattern, Scene, Shading};
@@ -44,6 +45,9 @@ impl Plan {
             (Counter::FieldTests, !scene.fields.is_empty()),
             (Counter::FieldSteps, !scene.fields.is_empty()),
             (Counter::FieldOcclusion, !scene.fields.is_empty() && scene.occlusion > 0.0),
+            (Counter::NodeVisits, !scene.meshes.is_empty()),
+            (Counter::FacetTests, !scene.meshes.is_empty()),
+            (Counter::SmoothFacets, scene.meshes.instances().iter().any(|i| i.mesh().is_smooth())),
             (Counter::ReflectedRays, mirrors),
             (Counter::RefractedRays, glass),
             (Counter::RoughRays, rough),
@@ -85,16 +89,19 @@ impl Plan {
     }
 }
 
-/// The materials of all shapes.
+/// What the shapes and meshes of a scene are made of.
 fn materials(scene: &Scene) -> impl Iterator<Item = &Material> {
     let shapes = (0..scene.shape_count()).map(|i| scene.shape(i).material());
     let mixed = scene.fields.iter().flat_map(|field| &field.nodes).map(|node| node.material);
-    shapes.chain(mixed).map(|i| &scene.materials[i])
+    let meshes = scene.meshes.instances().iter().map(|i| i.material);
+    shapes.chain(mixed).chain(meshes).map(|i| &scene.materials[i])
 }
 
 /// Named faults of a scene: data that its quality or the engine's limits can't show.
 pub fn warnings(scene: &Scene, quality: &Quality) -> Vec<&'static str> {
     let materials = || materials(scene);
+    let facets: usize = scene.meshes.instances().iter().map(|i| i.mesh().triangles().len()).sum();
+    let clear = |i: &Instance| scene.materials[i.material].is_transparent();
     let spot = |kind: LightKind| matches!(kind, LightKind::Spot { inner, outer, .. } if inner <= outer);
     let faults = [
         (quality.depth < 2 && materials().any(|m| m.is_transparent()), "glass needs a depth of two or more"),
@@ -105,6 +112,8 @@ pub fn warnings(scene: &Scene, quality: &Quality) -> Vec<&'static str> {
             scene.fields.iter().any(|f| f.nodes.len() > Field::MOST),
             "nodes of a field after the 32nd are not there",
         ),
+        (scene.meshes.instances().iter().any(clear), "meshes of glass cast no shadow"),
+        (scene.shape_count() + facets > 1 << 22, "more shapes and facets than ids"),
         (scene.lights.iter().any(|l| spot(l.kind)), "a spot's inner cone is wider than its outer one"),
         (scene.background.stops.windows(2).any(|s| s[0].y >= s[1].y), "the sky's stops do not ascend"),
     ];

@@ -13,6 +13,7 @@ const CLOSE: usize = 3;
 const LSEEK: usize = 8;
 const MMAP: usize = 9;
 const MPROTECT: usize = 10;
+const MADVISE: usize = 28;
 const ALARM: usize = 37;
 const UNLINK: usize = 87;
 const EXIT_GROUP: usize = 231;
@@ -97,12 +98,16 @@ pub fn memory_at(address: usize, length: usize) -> *mut u8 {
     const READ_WRITE: usize = 3;
     const PRIVATE_ANONYMOUS: usize = 0x22;
     const NO_FILE: usize = usize::MAX;
+    const HUGE_PAGES: usize = 14;
     // At least a byte, since the system refuses to map nothing.
     // SAFETY: the system never takes a place that is in use.
     let found = unsafe { call(MMAP, address, length + 1, READ_WRITE, PRIVATE_ANONYMOUS, NO_FILE) };
     if found < 0 {
         die(b"", b"not enough memory\n", 4);
     }
+    // In large pages, which are found faster, if the system has some.
+    // SAFETY: changes nothing that the program can see.
+    unsafe { call(MADVISE, found as usize, length, HUGE_PAGES, 0, 0) };
     found as *mut u8
 }
 

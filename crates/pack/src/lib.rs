@@ -26,7 +26,7 @@ pub use error::Error;
 /// How to compress.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
-    /// Context mixing: smallest from about 20 kB on, decodes about 200 kB a second.
+    /// Context mixing: smallest from about 20 kB on, decodes about 150 kB a second.
     Cm,
     /// LZMA: a smaller launcher, and hardly any time.
     Lzma,

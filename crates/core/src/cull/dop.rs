@@ -245,7 +245,7 @@ impl Dop {
     pub fn of(view: &View, shape: Shape) -> Dop {
         match shape {
             Shape::Sphere(s) => Dop::ball(view.local(s.centre), s.radius),
-            Shape::Plane(_) => Dop::EVERYWHERE,
+            Shape::Plane(_) | Shape::Facet(..) => Dop::EVERYWHERE,
             Shape::Cylinder(s) if s.length < f32::INFINITY => {
                 let end = s.base + s.axis * s.length;
                 Dop::discs(view, s.axis, (s.base, s.radius), (end, s.radius))

@@ -22,6 +22,7 @@ fn middle(shape: Shape, lamp: Vec3) -> Vec3 {
     match shape {
         Shape::Sphere(s) => s.centre,
         Shape::Plane(s) => s.point,
+        Shape::Facet(..) => Vec3::ZERO,
         Shape::Cylinder(s) if s.length < f32::INFINITY => s.base + s.axis * (s.length * 0.5),
         Shape::Cylinder(s) => s.base + s.axis * s.axis.dot(lamp - s.base),
         Shape::Cone(s) => {

@@ -125,6 +125,37 @@ pub fn copysign(magnitude: F, sign: F) -> F {
     (magnitude & !bit) | (sign & bit)
 }
 
+/// The greatest lane, in all lanes; lanes must not be NaN.
+#[inline(always)]
+pub fn greatest(v: F) -> F {
+    #[cfg(all(target_arch = "x86_64", target_feature = "avx"))]
+    {
+        use safe_arch::{m256, permute_m256, permute2z_m256};
+        let v = m256(v.into());
+        let both = |a: m256, b: m256| F::from(a.0).fast_max(F::from(b.0));
+        let v = m256(both(v, permute2z_m256::<1>(v, v)).into());
+        let v = m256(both(v, permute_m256::<0b01_00_11_10>(v)).into());
+        both(v, permute_m256::<0b10_11_00_01>(v))
+    }
+    #[cfg(not(all(target_arch = "x86_64", target_feature = "avx")))]
+    F::splat(v.to_array().into_iter().fold(f32::NEG_INFINITY, |m, x| if x > m { x } else { m }))
+}
+
+/// The least lane, in all lanes; lanes must not be NaN.
+#[inline(always)]
+pub fn least(v: F) -> F {
+    -greatest(-v)
+}
+
+/// Four numbers, twice.
+#[inline(always)]
+pub fn twice(v: &[f32; 4]) -> F {
+    #[cfg(all(target_arch = "x86_64", target_feature = "avx"))]
+    return F::from(safe_arch::load_m128_splat_m256(&safe_arch::m128::from(*v)).0);
+    #[cfg(not(all(target_arch = "x86_64", target_feature = "avx")))]
+    return F::new([v[0], v[1], v[2], v[3], v[0], v[1], v[2], v[3]]);
+}
+
 /// a·b − c·d from the exact products, rounded to f64 and then to f32.
 ///
 /// Products of f32 are exact in f64, so nothing cancels but what cancels in the exact values: the error

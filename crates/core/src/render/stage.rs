@@ -1,6 +1,7 @@
 //! A scene made ready for one frame: what every ray asks for, computed once.
 
 use crate::cull::{Dop, FieldNode, Shaft, View, dops, field_nodes, shafts};
+use crate::features;
 use crate::math::lanes::{F, V3, splat};
 use crate::post::Display;
 use crate::quality::{Quality, Rung};
@@ -117,15 +118,18 @@ impl<'a> Stage<'a> {
     }
 
     /// What is interpolated on the shape with this hit id. Where a field's surface lies between the
-    /// samples is not known without marching: there it is the colour.
+    /// samples is not known without marching, nor that of a curved mesh from one facet: there it is
+    /// the colour.
     pub fn rung(&self, id: f32) -> Rung {
-        let fields = self.scene.shape_count() - self.scene.fields.len();
-        if id >= 0.0 && id as usize >> 2 >= fields { Rung::Colour } else { self.quality.rung }
-    }
-
-    /// Whether the shape is a field without finite bodies, which can't be bounded.
-    pub fn endless(&self, index: usize) -> bool {
-        matches!(self.scene.shape(index), Shape::Field(f) if f.nodes.iter().all(|n| n.core().is_none()))
+        let (shape, count) = (id.max(0.0) as usize >> 2, self.scene.shape_count());
+        let vague = if id < 0.0 {
+            false
+        } else if shape < count {
+            shape >= count - self.scene.fields.len()
+        } else {
+            features::SMOOTH && self.scene.meshes.facet(shape - count).0.mesh().is_smooth()
+        };
+        if vague { Rung::Colour } else { self.quality.rung }
     }
 
     /// Mask of the shapes that may show in the square of `side` px at `corner`, see

@@ -14,7 +14,7 @@ use super::block::{Sample, Samples};
 use super::interpolate::fill;
 use super::tile::{GRID, Kind, Record, TILE, Tile};
 use super::wave::{Position, Scratch, trace};
-use crate::counters::Counter;
+use crate::counters::{Counter, Counters};
 use crate::cull::{Bounds, Region, may_cover, occluders};
 use crate::math::lanes::F;
 use crate::quality::Rung;
@@ -100,7 +100,8 @@ pub fn refine(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize), tile
                     }
                 }
             } else if cell.size <= stage.quality.smallest as usize
-                || (known.smooth(stage) && !around.may_hide_something(stage, corner, cell, &known))
+                || (known.smooth(stage)
+                    && !around.may_hide_something(stage, corner, cell, &known, &mut scratch.counters))
             {
                 fill(stage, corner, cell, &known, tile, &mut scratch.counters);
             } else {
@@ -230,7 +231,14 @@ impl Corners<'_> {
 impl Surroundings {
     /// Whether a shape, or the shadow of one, may lie between the samples of a cell.
     #[inline(never)]
-    fn may_hide_something(&self, stage: &Stage, corner: (usize, usize), cell: Cell, known: &Corners) -> bool {
+    fn may_hide_something(
+        &self,
+        stage: &Stage,
+        corner: (usize, usize),
+        cell: Cell,
+        known: &Corners,
+        counters: &mut Counters,
+    ) -> bool {
         let id = known.corners[0].id();
         let own = if id >= 0.0 { id as usize >> 2 } else { usize::MAX };
         let half = cell.size as f32 * 0.5;
@@ -254,12 +262,22 @@ impl Surroundings {
                 return true;
             }
         }
+        let meshes = &stage.scene.meshes;
+        let [right, up, forward] = [0, 1, 2].map(|axis| stage.view.world_from_view.col(axis));
+        let towards = |sign: (f32, f32)| {
+            let p = at + reach * Vec2::from(sign);
+            right * p.x + up * p.y + forward
+        };
+        let corners = [(-1.0, 1.0), (1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)].map(towards);
+        if meshes.may_lie_between(stage.view.origin, corners, depths, counters) {
+            return true;
+        }
         if own == usize::MAX {
             return false;
         }
         let points = known.corners.map(|s| s.point());
         // Between the corners a curved surface bulges out of their hull.
-        let flat = matches!(stage.scene.shape(own), Shape::Plane(_) | Shape::Triangle(_));
+        let flat = matches!(stage.scene.shape(own), Shape::Plane(_) | Shape::Triangle(_) | Shape::Facet(..));
         let across = (points[3] - points[0]).length().max((points[2] - points[1]).length());
         let region = Region::patch(&points, if flat { 0.0 } else { 0.1 * across });
         let material = &stage.scene.materials[stage.scene.shape(own).material()];
@@ -267,15 +285,20 @@ impl Surroundings {
             let position = stage.lamps[lamp].position;
             let faces = known.corners.iter().any(|s| s.normal().dot(position - s.point()) > 0.0);
             let lit = faces && known.corners.iter().all(|s| s.code(lamp) != BLOCKED);
-            if self.shadows[lamp] == 0 || !lit || !stage.lamps[lamp].lights(material) {
+            if (self.shadows[lamp] == 0 && meshes.is_empty()) || !lit || !stage.lamps[lamp].lights(material) {
                 continue;
+            }
+            let to = points.map(|p| p - position);
+            if meshes.may_lie_between(position, to, [1.0; 4], counters) {
+                return true;
             }
             // A body that already colours the light of all samples is known to be there.
             let crossed = known.corners[0].code(lamp) as u32;
             let may = occluders(stage.scene, shafts, self.shadows[lamp], Some(own), &region);
             for (i, &bit) in stage.bits.iter().enumerate() {
                 let known_tint = bit > 0.0 && crossed & bit as u32 != 0;
-                let unbounded = matches!(stage.scene.shape(i), Shape::Plane(_)) || stage.endless(i);
+                // The bound of a field is too loose to say that its shadow is near.
+                let unbounded = matches!(stage.scene.shape(i), Shape::Plane(_) | Shape::Field(_));
                 if may >> (i & 63) & 1 == 1 && i != own && !known_tint && !unbounded {
                     return true;
                 }

@@ -38,10 +38,11 @@ pub struct Scratch {
 struct Boxes(Vec<(f32, Bounds)>);
 
 impl Boxes {
-    /// Adds the points of a packet's hits.
-    fn add(&mut self, points: V3, ids: F) {
+    /// Adds the points of a packet's hits; shapes from number `facets` on are facets of meshes.
+    fn add(&mut self, points: V3, ids: F, facets: f32) {
         // The part of the shape makes no difference.
-        let shapes = (ids * splat(0.25)).floor();
+        // Facets share one box.
+        let shapes = (ids * splat(0.25)).floor().fast_min(splat(facets));
         let mut todo = ids.simd_ge(F::ZERO).to_bitmask();
         while todo != 0 {
             let shape = shapes.as_array()[todo.trailing_zeros() as usize];
@@ -143,7 +144,8 @@ fn step(stage: &Stage, scratch: &mut Scratch, candidates: u64, level: u32) {
     if stage.quality.cull && hits.len() >= CULL_FROM {
         boxes.0.clear();
         for (packet, hit) in rays.packets.iter().zip(hits.iter()) {
-            boxes.add(packet.rays.origin + packet.rays.direction * hit.t, hit.id);
+            let points = packet.rays.origin + packet.rays.direction * hit.t;
+            boxes.add(points, hit.id, stage.scene.shape_count() as f32);
         }
         shadows = boxes.candidates(stage);
     }
@@ -164,7 +166,9 @@ fn step(stage: &Stage, scratch: &mut Scratch, candidates: u64, level: u32) {
             for (lane, &owner) in owners.iter().enumerate() {
                 // Two hits deep for all, three for what is seen through glass.
                 let id = samples.get(owner as usize).id();
-                let deep = level == 1 || (level == 2 && id >= 0.0 && stage.bits[id as usize >> 2] > 0.0);
+                let shape = id.max(0.0) as usize >> 2;
+                let glass = id >= 0.0 && stage.bits.get(shape).is_some_and(|&bit| bit > 0.0);
+                let deep = level == 1 || (level == 2 && glass);
                 let hash = (deep && drawn >> lane & 1 == 0).then_some(hash.as_array()[lane]);
                 samples.add(owner as usize, found.block.colour.lane(lane), hash);
             }
@@ -280,6 +284,10 @@ fn shade_packet(
     block.point = s.point;
     block.normal = s.normal;
     (block.node, *part) = (s.node, s.part);
+    if features::SMOOTH {
+        let facets = id.simd_ge(splat(4.0 * scene.shape_count() as f32)) & s.part.simd_ne(F::ZERO);
+        counters.add(Counter::SmoothFacets, facets.to_bitmask().count_ones() as usize);
+    }
 
     let facing = V3::select(s.inside, -s.outward, s.outward);
     let offset = facing * s.clearance;

@@ -87,7 +87,7 @@ pub struct Field {
 const ROOM: f32 = 0.01;
 
 impl Node {
-    fn new(form: Form, rounding: f32, centre: Vec3) -> Self {
+    const fn new(form: Form, rounding: f32, centre: Vec3) -> Self {
         Self {
             form,
             rounding,
@@ -102,43 +102,47 @@ impl Node {
     }
 
     /// A ball.
-    pub fn sphere(centre: Vec3, radius: f32) -> Self {
+    pub const fn sphere(centre: Vec3, radius: f32) -> Self {
         Self::new(Form::Box(Vec3::ZERO), radius, centre)
     }
 
     /// A box with half sides `half`, its edges rounded with a radius.
-    pub fn cuboid(centre: Vec3, half: Vec3, rounding: f32) -> Self {
-        Self::new(Form::Box(half - rounding), rounding, centre)
+    pub const fn cuboid(centre: Vec3, half: Vec3, rounding: f32) -> Self {
+        Self::new(
+            Form::Box(Vec3::new(half.x - rounding, half.y - rounding, half.z - rounding)),
+            rounding,
+            centre,
+        )
     }
 
     /// A ball drawn out to both sides along y.
-    pub fn capsule(centre: Vec3, half_length: f32, radius: f32) -> Self {
-        Self::new(Form::Box(Vec3::Y * half_length), radius, centre)
+    pub const fn capsule(centre: Vec3, half_length: f32, radius: f32) -> Self {
+        Self::new(Form::Box(Vec3::new(0.0, half_length, 0.0)), radius, centre)
     }
 
     /// A cylinder about y with flat ends.
-    pub fn cylinder(centre: Vec3, half_length: f32, radius: f32) -> Self {
+    pub const fn cylinder(centre: Vec3, half_length: f32, radius: f32) -> Self {
         Self::new(Form::Round([radius, half_length, 0.0]), 0.0, centre)
     }
 
     /// A ring about y.
-    pub fn torus(centre: Vec3, radius: f32, thickness: f32) -> Self {
+    pub const fn torus(centre: Vec3, radius: f32, thickness: f32) -> Self {
         Self::new(Form::Round([0.0, 0.0, radius]), thickness, centre)
     }
 
     /// All below the level of `point`.
-    pub fn plane(point: Vec3) -> Self {
+    pub const fn plane(point: Vec3) -> Self {
         Self::new(Form::Plane, 0.0, point)
     }
 
     /// Waves on what was joined so far.
-    pub fn swell(amplitude: f32, frequency: f32) -> Self {
+    pub const fn swell(amplitude: f32, frequency: f32) -> Self {
         let form = Form::Swell { amplitude, frequency };
         Self { join: Join::Sum, ..Self::new(form, 0.0, Vec3::ZERO) }
     }
 
     /// The same, joined so.
-    pub fn joined(self, join: Join, blend: f32) -> Self {
+    pub const fn joined(self, join: Join, blend: f32) -> Self {
         Self { join, blend, ..self }
     }
 

@@ -2,7 +2,8 @@
 //!
 //! A scene is made anew for each frame by the show's pure functions of time. Shapes of all kinds
 //! share one index space, [`Scene::shape_count`] long: spheres first, then planes, cylinders,
-//! cones, triangles and fields, each in list order. Right-handed, y up, world units.
+//! cones, triangles and fields, each in list order. Facets of meshes follow. Right-handed, y up,
+//! world units.
 
 mod background;
 mod beam;
@@ -24,6 +25,7 @@ pub use shapes::{Cone, Cylinder, Plane, Sphere, Triangle};
 pub use texture::{Pattern, Texture};
 pub use track::{Ease, Key, track};
 
+use crate::mesh::Assembly;
 use glam::Vec3;
 
 /// How light that arrives directly from a lamp is reflected.
@@ -116,6 +118,8 @@ pub struct Scene {
     /// Distance up to which fields take ambient light from what is near them, world units; 0 for
     /// not at all.
     pub occlusion: f32,
+    /// Triangle meshes, placed.
+    pub meshes: Assembly,
     /// What shapes are made of; shapes hold indices into this list.
     pub materials: Vec<Material>,
     /// Lamps that are not seen themselves.
@@ -140,7 +144,7 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Number of shapes of all kinds together.
+    /// Number of shapes of all kinds together; facets of meshes are numbered after them.
     pub fn shape_count(&self) -> usize {
         self.spheres.len()
             + self.planes.len()

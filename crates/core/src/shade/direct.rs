@@ -151,7 +151,7 @@ pub fn direct(
         let wanted = active & plain & n_l.simd_gt(zero) & facing.dot(l).simd_gt(zero) & reach.simd_gt(zero);
         if let (Some(code), Visibility::Trace(candidates)) = (codes.get_mut(k), &visibility) {
             *code = zero;
-            if candidates[k] != 0 && wanted.any() {
+            if (candidates[k] != 0 || !stage.scene.meshes.is_empty()) && wanted.any() {
                 counters.add(Counter::ShadowRays, wanted.to_bitmask().count_ones() as usize);
                 let rays = Rays8 { origin: start, direction: to_lamp };
                 let found = occlusion(

@@ -2,7 +2,7 @@
 
 use super::Rays8;
 use crate::counters::Counters;
-use crate::math::lanes::{F, splat};
+use crate::math::lanes::{F, TRUE, splat};
 use crate::quality::Quality;
 use crate::scene::Scene;
 
@@ -19,7 +19,7 @@ pub struct Hits {
     pub id: F,
 }
 
-/// The nearest hit of each ray among the candidate shapes; ties go to the lower shape index.
+/// The nearest hit of each ray among the candidate shapes and all facets; ties go to the lower shape index.
 ///
 /// Bit i of `candidates` stands for the shapes whose index is i modulo 64: leaving out a bit must
 /// only leave out shapes that no lane can hit.
@@ -43,5 +43,6 @@ pub fn nearest(
         best.t = closer.select(t, best.t);
         best.id = closer.select(splat(index as f32 * 4.0) + part, best.id);
     }
+    scene.meshes.search(scene, rays, TRUE, false, &mut best, counters);
     best
 }

@@ -29,11 +29,12 @@ pub use round::{cone, cylinder};
 pub use sphere::sphere;
 pub use surface::{Surface, surface};
 pub use texture::relief_within;
-pub use triangle::triangle;
+pub use triangle::{Aim, Crossing, triangle};
 
 use crate::counters::{Counter, Counters};
 use crate::features;
 use crate::math::lanes::{F, V3, splat};
+use crate::mesh::Instance;
 use crate::quality::Quality;
 use crate::scene::{Cone, Cylinder, Field, Plane, Scene, Sphere, Triangle};
 
@@ -132,10 +133,11 @@ pub enum Shape<'a> {
     Cone(&'a Cone),
     Triangle(&'a Triangle),
     Field(&'a Field),
+    Facet(&'a Instance, usize),
 }
 
 impl Scene {
-    /// The shape at `index` in the common index space, `index < shape_count()`.
+    /// The shape at `index` in the common index space; from `shape_count()` on the meshes' facets.
     pub fn shape(&self, index: usize) -> Shape<'_> {
         let mut i = index;
         if let Some(s) = self.spheres.get(i) {
@@ -157,7 +159,12 @@ impl Scene {
         if let Some(s) = self.triangles.get(i) {
             return Shape::Triangle(s);
         }
-        Shape::Field(&self.fields[i - self.triangles.len()])
+        i -= self.triangles.len();
+        if !features::MESHES || i < self.fields.len() {
+            return Shape::Field(&self.fields[i]);
+        }
+        let (instance, facet) = self.meshes.facet(i - self.fields.len());
+        Shape::Facet(instance, facet)
     }
 }
 
@@ -171,6 +178,7 @@ impl Shape<'_> {
             Shape::Cone(_) => Counter::ConeTests,
             Shape::Triangle(_) => Counter::TriangleTests,
             Shape::Field(_) => Counter::FieldTests,
+            Shape::Facet(..) => Counter::FacetTests,
         }
     }
 
@@ -183,6 +191,7 @@ impl Shape<'_> {
             Shape::Cone(s) => s.material,
             Shape::Triangle(s) => s.material,
             Shape::Field(s) => s.nodes.first().map_or(0, |node| node.material),
+            Shape::Facet(s, _) => s.material,
         }
     }
 
@@ -197,6 +206,7 @@ impl Shape<'_> {
             Shape::Triangle(s) => triangle(rays, s),
             Shape::Field(s) if features::FIELDS => field(rays, s, limit, quality, counters),
             Shape::Field(_) => Span::MISS,
+            Shape::Facet(s, facet) => s.span(*facet, rays),
         }
     }
 }

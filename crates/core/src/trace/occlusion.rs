@@ -1,6 +1,6 @@
 //! Whether light reaches a point: blocked by an opaque shape, coloured by transparent ones.
 
-use super::Rays8;
+use super::{Hits, NONE, Rays8};
 use crate::counters::Counters;
 use crate::math::lanes::{F, splat};
 use crate::quality::Quality;
@@ -48,6 +48,11 @@ pub fn occlusion(
                 break;
             }
         }
+    }
+    if open.any() {
+        let mut hits = Hits { t: end, id: splat(NONE) };
+        scene.meshes.search(scene, rays, open, true, &mut hits, counters);
+        open &= hits.t.simd_gt(zero);
     }
     (wanted & !open).select(splat(BLOCKED), code)
 }

@@ -33,11 +33,14 @@ pub struct Surface {
     pub outward: V3,
     /// Mask of rays that met the surface from behind: from inside a body.
     pub inside: F,
+    /// Weights of the second and third corner of a mesh's triangle, else 0.
+    pub uv: [F; 2],
     /// How far off the surface a secondary ray must start, world units.
     pub clearance: F,
     /// Node of a field that has most of the surface; 0 on other shapes.
     pub node: F,
-    /// Which of a field's sharply joined parts that is; 0 on other shapes.
+    /// Which of a field's sharply joined parts that is; on a mesh that stands for something curved,
+    /// the bits in which the hit's id differs from that of its first facet; 0 on other shapes.
     pub part: F,
     /// Material channels, see [`Channel`].
     pub material: [F; Material::CHANNELS],
@@ -118,6 +121,8 @@ fn locate(scene: &Scene, shape: Shape, part: u32, p: V3) -> Located {
             let n = V3::splat(b - a).cross_exact(V3::splat(c - a));
             onto_plane(p, a, n.normalize())
         }
+        // Done with all facets of its instance at once.
+        Shape::Facet(..) => onto_plane(p, glam::Vec3::ZERO, p),
         Shape::Cylinder(s) => round(p, s.base, s.axis, (s.radius, 0.0), [0.0, s.length], part),
         Shape::Cone(s) => round(p, s.apex, s.axis, (0.0, s.slope), s.range, part),
         Shape::Field(_) => onto_plane(p, glam::Vec3::ZERO, V3::ZERO),
@@ -166,17 +171,19 @@ pub fn surface(scene: &Scene, quality: &Quality, rays: &Rays8, t: F, id: F, spre
         normal: up,
         outward: up,
         inside: F::ZERO,
+        uv: [F::ZERO; 2],
         clearance: F::ZERO,
         node: F::ZERO,
         part: F::ZERO,
         material: [F::ZERO; Material::CHANNELS],
     };
     let p = rays.origin + rays.direction * t;
+    let base = 4.0 * scene.shape_count() as f32;
     let ids = id.to_array();
     let mut todo = id.simd_ge(F::ZERO).to_bitmask();
     while todo != 0 {
         let lane_id = ids[todo.trailing_zeros() as usize];
-        let mask = id.simd_eq(splat(lane_id));
+        let mut mask = id.simd_eq(splat(lane_id));
         todo &= !mask.to_bitmask();
         let (index, part) = (lane_id as usize >> 2, lane_id as u32 & 3);
         let shape = scene.shape(index);
@@ -192,7 +199,22 @@ pub fn surface(scene: &Scene, quality: &Quality, rays: &Rays8, t: F, id: F, spre
             burn(&scene.materials[shape.material()], mask, &mut s);
             continue;
         }
-        let (point, outward, normal, scale) = locate(scene, shape, part, p);
+        let (point, outward, normal, scale) = match shape {
+            Shape::Facet(instance, _) if features::MESHES => {
+                let [first, end] = instance.ids(base);
+                mask = id.simd_ge(splat(first)) & id.simd_lt(splat(end));
+                todo &= !mask.to_bitmask();
+                let facets = instance.facets(rays, (id - splat(first)) * splat(0.25));
+                for (uv, of_facets) in s.uv.iter_mut().zip(facets.uv) {
+                    *uv = mask.select(of_facets, *uv);
+                }
+                if instance.mesh().is_smooth() {
+                    s.part = mask.select(id ^ splat(first), s.part);
+                }
+                (facets.point, facets.outward, facets.normal, facets.reach)
+            }
+            _ => locate(scene, shape, part, p),
+        };
         s.point = V3::select(mask, point, s.point);
         s.outward = V3::select(mask, outward, s.outward);
         s.normal = V3::select(mask, normal, s.normal);

@@ -6,32 +6,82 @@
 //! u = cx by - cy bx and alike come from exact products, so their signs are exact, and on the
 //! rounded corners no ray slips through a mesh. Zero counts as inside for both signs; only a
 //! vanishing sum misses. Woop, Benthin and Wald, JCGT 2(1), 2013.
+//!
+//! All of it acts lane by lane: eight rays against one triangle, or one ray against eight.
 
 use super::{Rays8, Span};
 use crate::math::lanes::{F, V3, difference_of_products};
 use crate::scene::Triangle;
 
+/// Eight rays, turned and sheared.
+pub struct Aim {
+    origin: V3,
+    by_z: F,
+    by_y: F,
+    shear_x: F,
+    shear_y: F,
+    along: F,
+}
+
+/// Where rays cross triangles.
+pub struct Crossing {
+    /// Distance along the ray.
+    pub t: F,
+    /// Mask of the rays that cross; in other lanes the rest is nonsense.
+    pub hit: F,
+    /// Weights of the corners, which sum to `sum`.
+    pub weights: [F; 3],
+    /// Twice the sheared triangle's area.
+    pub sum: F,
+}
+
+impl Aim {
+    /// What the triangles that `rays` are tested against share.
+    #[inline(never)]
+    pub fn new(rays: &Rays8) -> Self {
+        let (x, y, z) = (rays.direction.x.abs(), rays.direction.y.abs(), rays.direction.z.abs());
+        let mut aim = Aim {
+            origin: rays.origin,
+            by_z: z.simd_ge(x) & z.simd_ge(y),
+            by_y: y.simd_ge(x),
+            shear_x: F::ZERO,
+            shear_y: F::ZERO,
+            along: F::ZERO,
+        };
+        let d = aim.turn(rays.direction);
+        (aim.shear_x, aim.shear_y, aim.along) = (d.x / d.z, d.y / d.z, d.z);
+        aim
+    }
+
+    #[inline(always)]
+    fn turn(&self, v: V3) -> V3 {
+        let pick = |z: F, y: F, x: F| self.by_z.select(z, self.by_y.select(y, x));
+        V3::new(pick(v.x, v.z, v.y), pick(v.y, v.x, v.z), pick(v.z, v.y, v.x))
+    }
+
+    /// Where the rays cross triangles with these corners.
+    #[inline(never)]
+    pub fn cross(&self, corners: &[V3; 3]) -> Crossing {
+        let zero = F::ZERO;
+        let [a, b, c] = corners.map(|p| {
+            let p = self.turn(p - self.origin);
+            V3::new(p.x - self.shear_x * p.z, p.y - self.shear_y * p.z, p.z)
+        });
+        let edge = |p: V3, q: V3| difference_of_products(q.x, p.y, q.y, p.x);
+        let (u, v, w) = (edge(b, c), edge(c, a), edge(a, b));
+        let inside = (u.simd_ge(zero) & v.simd_ge(zero) & w.simd_ge(zero))
+            | (u.simd_le(zero) & v.simd_le(zero) & w.simd_le(zero));
+        if !inside.any() {
+            return Crossing { t: zero, hit: zero, weights: [F::ONE, zero, zero], sum: F::ONE };
+        }
+        let sum = u + v + w;
+        let t = (u * a.z + v * b.z + w * c.z) / (sum * self.along);
+        Crossing { t, hit: inside & sum.simd_ne(zero), weights: [u, v, w], sum }
+    }
+}
+
 /// Where `rays` cross the triangle.
 pub fn triangle(rays: &Rays8, s: &Triangle) -> Span {
-    let zero = F::ZERO;
-    let (x, y, z) = (rays.direction.x.abs(), rays.direction.y.abs(), rays.direction.z.abs());
-    let by_z = z.simd_ge(x) & z.simd_ge(y);
-    let by_y = y.simd_ge(x);
-    let turn = |v: V3| {
-        let pick = |z: F, y: F, x: F| by_z.select(z, by_y.select(y, x));
-        V3::new(pick(v.x, v.z, v.y), pick(v.y, v.x, v.z), pick(v.z, v.y, v.x))
-    };
-    let d = turn(rays.direction);
-    let (shear_x, shear_y) = (d.x / d.z, d.y / d.z);
-    let [a, b, c] = s.corners.map(|p| {
-        let p = turn(V3::splat(p) - rays.origin);
-        V3::new(p.x - shear_x * p.z, p.y - shear_y * p.z, p.z)
-    });
-    let edge = |p: V3, q: V3| difference_of_products(q.x, p.y, q.y, p.x);
-    let (u, v, w) = (edge(b, c), edge(c, a), edge(a, b));
-    let inside = (u.simd_ge(zero) & v.simd_ge(zero) & w.simd_ge(zero))
-        | (u.simd_le(zero) & v.simd_le(zero) & w.simd_le(zero));
-    let sum = u + v + w;
-    let t = (u * a.z + v * b.z + w * c.z) / (sum * d.z);
-    Span::single(t, inside & sum.simd_ne(zero))
+    let crossing = Aim::new(rays).cross(&s.corners.map(V3::splat));
+    Span::single(crossing.t, crossing.hit)
 }

@@ -109,8 +109,27 @@ pub struct Walker {
     pub modrm: u32,
     /// The bytes so far of the displacement or immediate.
     pub field: u32,
-    /// The last instructions (opcode and ModRM, mixed), newest first.
-    pub previous: [u32; 4],
+    /// The displacement of this instruction, once it is complete.
+    pub displacement: u32,
+    /// What came in the last instructions, newest first.
+    pub past: Past,
+}
+
+/// What the walker remembers of instructions that are complete; each newest first.
+#[derive(Clone)]
+pub struct Past {
+    /// Opcodes.
+    pub opcodes: [u32; 4],
+    /// ModRM and SIB.
+    pub modrms: [u32; 3],
+    /// Prefixes.
+    pub prefixes: [u32; 2],
+    /// The last displacement.
+    pub displacement: u32,
+    /// The last displacement of four bytes that was added to a register.
+    pub offset: u32,
+    /// The last immediate.
+    pub immediate: u32,
 }
 
 impl Walker {
@@ -171,7 +190,17 @@ impl Walker {
                 self.field = self.field << 8 | value;
                 self.left -= 1;
                 if self.left == 0 {
-                    if self.part == Part::Displacement { self.constant() } else { self.finish() }
+                    if self.part == Part::Displacement {
+                        self.displacement = self.field;
+                        self.past.displacement = self.field;
+                        if self.modrm & 0xc0 == 0x80 {
+                            self.past.offset = self.field;
+                        }
+                        self.constant()
+                    } else {
+                        self.past.immediate = self.field;
+                        self.finish()
+                    }
                 }
             }
         }
@@ -239,9 +268,14 @@ impl Walker {
     /// The instruction is complete.
     #[inline(never)]
     pub fn finish(&mut self) {
-        let [a, b, c, _] = self.previous;
-        let whole = mix(self.opcode, self.modrm & 0xff);
-        *self = Walker { previous: [whole, a, b, c], ..Walker::START };
+        let Past { opcodes: [a, b, c, _], modrms: [d, e, _], prefixes: [f, _], .. } = self.past;
+        let past = Past {
+            opcodes: [self.opcode, a, b, c],
+            modrms: [self.modrm, d, e],
+            prefixes: [self.prefix, f],
+            ..self.past
+        };
+        *self = Walker { past, ..Walker::START };
     }
 
     /// The state before the first byte.
@@ -254,7 +288,15 @@ impl Walker {
         opcode: 0,
         modrm: 0,
         field: 0,
-        previous: [0; 4],
+        displacement: 0,
+        past: Past {
+            opcodes: [0; 4],
+            modrms: [0; 3],
+            prefixes: [0; 2],
+            displacement: 0,
+            offset: 0,
+            immediate: 0,
+        },
     };
 }
 

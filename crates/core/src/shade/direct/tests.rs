@@ -22,6 +22,7 @@ fn surface(roughness: f32, exponent: f32) -> Surface {
         normal: up,
         outward: up,
         inside: FALSE,
+        uv: [F::ZERO; 2],
         clearance: F::ZERO,
         node: F::ZERO,
         part: F::ZERO,

@@ -15,6 +15,7 @@ fn glass(normal: V3, facing: V3, inside: bool, ior: f32, f0: f32) -> Surface {
         normal,
         outward: V3::select(inside, -facing, facing),
         inside,
+        uv: [F::ZERO; 2],
         clearance: ZERO,
         node: ZERO,
         part: ZERO,

@@ -19,6 +19,7 @@ fn surface(roughness: f32, f0: Vec3) -> Surface {
         normal: up,
         outward: up,
         inside: FALSE,
+        uv: [F::ZERO; 2],
         clearance: F::ZERO,
         node: F::ZERO,
         part: F::ZERO,

@@ -6,16 +6,18 @@
 
 use crate::counters::Counters;
 use crate::math::lanes::{F, V3, splat};
+use crate::mesh::{Assembly, Instance, Mesh};
 use crate::quality::Quality;
 use crate::scene::Shading;
 use crate::scene::{Channel, Cone, Cylinder, Material, Plane, Scene, Sphere, Triangle};
 use crate::shade::split;
 use crate::trace::check::{Random, U, packet};
 use crate::trace::{NONE, Rays8, Surface, nearest, surface};
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Mat3, Vec3};
+use std::sync::Arc;
 
 /// Kinds of shapes under test; cones leave again only outwards.
-const KINDS: [&str; 5] = ["sphere", "plane", "cylinder", "cone", "triangle"];
+const KINDS: [&str; 6] = ["sphere", "plane", "cylinder", "cone", "triangle", "facet"];
 
 /// A scene with one shape of a kind, of glass, about as large as `r`, somewhere within `far`.
 fn one(random: &mut Random, kind: usize, r: f32, far: f32) -> Scene {
@@ -35,12 +37,28 @@ fn one(random: &mut Random, kind: usize, r: f32, far: f32) -> Scene {
             let range = [r * if random.one_in(2) { 0.0 } else { 0.5 }, r];
             scene.cones.push(Cone { apex: at, axis, slope, range, caps: [true; 2], material: 0 });
         }
-        _ => {
+        4 => {
             let corners = [at, at + random.direction() * r, at + random.direction() * r];
             scene.triangles.push(Triangle { corners, material: 0 });
         }
+        _ => {
+            // Made about the origin, stretched, turned and put somewhere else.
+            let (u, v) = axis.any_orthonormal_pair();
+            let [x, y, z] = [axis, u, v].map(|axis| axis * (r * random.size(-3, 1)));
+            let mesh = Arc::new(Mesh::flat(vec![[0; 3].map(|_| random.direction())]));
+            let instance = Instance::new(&mesh, Mat3::from_cols(x, y, z), at, 0);
+            scene.meshes = Assembly::new(vec![instance]);
+        }
     }
     scene
+}
+
+/// Corners of a scene's only triangle or facet, world.
+fn corners(scene: &Scene) -> [Vec3; 3] {
+    match scene.meshes.instances() {
+        [] => scene.triangles[0].corners,
+        [instance, ..] => instance.mesh().triangles()[0].map(|p| instance.to_world(p)),
+    }
 }
 
 /// Rays at the shape from up to `far`, through points within it or on it.
@@ -51,7 +69,7 @@ fn aim(random: &mut Random, scene: &Scene, r: f32, far: f32) -> Rays8 {
         Scene { cylinders: c, .. } if !c.is_empty() => (c[0].base, c[0].axis, c[0].length),
         Scene { cones: c, .. } if !c.is_empty() => (c[0].apex, c[0].axis, r),
         _ => {
-            let [a, b, c] = scene.triangles[0].corners;
+            let [a, b, c] = corners(scene);
             (a * 0.4 + b * 0.3 + c * 0.3, Vec3::Y, 0.0)
         }
     };
@@ -84,7 +102,7 @@ fn true_normal(scene: &Scene, s: &Surface, part: u32, lane: usize) -> DVec3 {
         Scene { cylinders: c, .. } if !c.is_empty() => about(c[0].base, c[0].axis, 0.0),
         Scene { cones: c, .. } if !c.is_empty() => about(c[0].apex, c[0].axis, f64::from(c[0].slope)),
         _ => {
-            let [a, b, c] = scene.triangles[0].corners.map(Vec3::as_dvec3);
+            let [a, b, c] = corners(scene).map(Vec3::as_dvec3);
             (b - a).cross(c - a).normalize()
         }
     }
@@ -143,7 +161,7 @@ fn run(kind: usize, radius: f32, cases: usize) -> (u32, u32, u32) {
                 format!("{scene:?} origin {o:?} direction {d:?} leaving {go:?} entering {enter:?} up {up:e}")
             };
             // From inside, the far wall is hit, which is right.
-            if up > 16.0 * U && (outside || kind == 1 || kind == 4) {
+            if up > 16.0 * U && (outside || kind == 1 || kind >= 4) {
                 left += 1;
                 if at(id2) >= 0.0 {
                     again += 1;
@@ -151,7 +169,7 @@ fn run(kind: usize, radius: f32, cases: usize) -> (u32, u32, u32) {
                 }
             }
             let clear = near_rim(&scene, s.point.lane(lane), part, at(s.clearance));
-            if kind != 1 && kind != 4 && outside && at(split.total) == 0.0 && clear && at(id3) < 0.0 {
+            if kind != 1 && kind < 4 && outside && at(split.total) == 0.0 && clear && at(id3) < 0.0 {
                 stuck += 1;
                 println!("no way out, clearance {}: {}", at(s.clearance), replay());
             }

@@ -1,0 +1,75 @@
+//! Triangle meshes: shared geometry with a tree over its triangles, and instances of it in a scene.
+//!
+//! A mesh is built once and shared; an instance places it by an affine map, anew each frame. Rays
+//! are taken into the mesh's own space, where their distances stay the same, so one tree serves
+//! all instances, however they are stretched. A second tree lies over the instances.
+
+mod ask;
+mod lathe;
+mod place;
+mod search;
+#[cfg(test)]
+mod tests;
+
+pub use lathe::lathe;
+pub use place::{Assembly, Instance};
+
+use crate::bvh::{Bounds, LEAF, Tree};
+use crate::features;
+use crate::math::lanes::{LANES, V3};
+use glam::Vec3;
+
+/// Triangles with a tree over them.
+#[derive(Clone, Debug, Default)]
+pub struct Mesh {
+    /// Corners, anticlockwise from outside.
+    triangles: Vec<[Vec3; 3]>,
+    /// Normals at the corners, for meshes that stand for something curved; else empty.
+    normals: Vec<[Vec3; 3]>,
+    tree: Tree,
+}
+
+impl Mesh {
+    /// A mesh of flat triangles: corners anticlockwise as seen from outside.
+    pub fn flat(triangles: Vec<[Vec3; 3]>) -> Mesh {
+        Mesh::smooth(triangles, Vec::new())
+    }
+
+    /// A mesh whose normals are interpolated between those at the corners, which are given for
+    /// every triangle, or for none. They need not be unit vectors.
+    #[inline(never)]
+    pub fn smooth(triangles: Vec<[Vec3; 3]>, normals: Vec<[Vec3; 3]>) -> Mesh {
+        let boxes: Vec<Bounds> = triangles.iter().map(|t| Bounds::around(t)).collect();
+        Mesh { tree: Tree::build(&boxes, LEAF), triangles, normals }
+    }
+
+    /// The triangles, in the order of their indices.
+    pub fn triangles(&self) -> &[[Vec3; 3]] {
+        &self.triangles
+    }
+
+    /// Whether its normals are interpolated.
+    pub fn is_smooth(&self) -> bool {
+        features::SMOOTH && !self.normals.is_empty()
+    }
+
+    /// What is wrong with the mesh or its tree, if something is.
+    pub fn validate(&self) -> Result<(), &'static str> {
+        if self.is_smooth() && self.normals.len() != self.triangles.len() {
+            return Err("normals for some triangles only");
+        }
+        self.tree.validate(&self.triangles.iter().map(|t| Bounds::around(t)).collect::<Vec<_>>())
+    }
+}
+
+/// Points of eight triangles, lane by lane.
+#[inline(never)]
+fn gather(list: &[[Vec3; 3]], index: [usize; LANES]) -> [V3; 3] {
+    let mut out = [V3::ZERO; 3];
+    for (lane, &i) in index.iter().enumerate() {
+        for (points, &p) in out.iter_mut().zip(&list[i]) {
+            points.set_lane(lane, p);
+        }
+    }
+    out
+}
