@@ -16,6 +16,8 @@ pub const FIELDS: bool = cfg!(feature = "fields");
 pub const FIELD_OCCLUSION: bool = cfg!(feature = "field-occlusion");
 /// Beams of light.
 pub const BEAMS: bool = cfg!(feature = "beams");
+/// Bounds of cylinders without ends; without it their shadows are sought everywhere.
+pub const ENDLESS: bool = cfg!(feature = "endless");
 /// Bounces of diffuse light.
 pub const BOUNCES: bool = cfg!(feature = "bounces");
 /// Mirrors of rough surfaces by several rays.
@@ -25,15 +27,29 @@ pub const MESHES: bool = cfg!(feature = "meshes");
 /// Meshes with interpolated normals.
 pub const SMOOTH: bool = cfg!(feature = "smooth");
 
+/// See [`crate::scene::Pattern::Cells`].
+pub const CELLS: bool = cfg!(feature = "cells");
+/// See [`crate::scene::Pattern::Stripes`].
+pub const STRIPES: bool = cfg!(feature = "stripes");
+/// See [`crate::scene::Pattern::Brick`].
+pub const BRICK: bool = cfg!(feature = "brick");
+/// See [`crate::scene::Pattern::Scratches`].
+pub const SCRATCHES: bool = cfg!(feature = "scratches");
+
 /// Each feature with the counter that shows it at work.
-pub const ALL: [(&str, Counter); 9] = [
+pub const ALL: [(&str, Counter); 14] = [
     ("ggx", Counter::Ggx),
     ("bumps", Counter::Bumps),
     ("fields", Counter::FieldSteps),
     ("field-occlusion", Counter::FieldOcclusion),
     ("beams", Counter::Beams),
+    ("endless", Counter::EndlessTests),
     ("bounces", Counter::ScatterRays),
     ("rough", Counter::RoughRays),
     ("meshes", Counter::NodeVisits),
     ("smooth", Counter::SmoothFacets),
+    ("cells", Counter::Cells),
+    ("stripes", Counter::Stripes),
+    ("brick", Counter::Brick),
+    ("scratches", Counter::Scratches),
 ];
