@@ -54,6 +54,63 @@ pub struct Options<'a> {
     pub fullscreen: bool,
 }
 
+/// What a flag asks for.
+#[derive(Clone, Copy)]
+enum Flag {
+    Help,
+    Version,
+    Frame,
+    From,
+    Threads,
+    Size,
+    Quality,
+    Scene,
+    Average,
+    View,
+    Output,
+    Once,
+    Fullscreen,
+}
+
+/// What follows a flag.
+#[derive(Clone, Copy)]
+enum Takes {
+    Nothing,
+    /// A whole number within bounds.
+    Number(u64, u64),
+    /// Width and height.
+    Size,
+    /// One of a list of names.
+    Name(Names),
+    /// The name of a picture file.
+    File,
+}
+
+/// What a flag is good for.
+#[derive(Clone, Copy, PartialEq)]
+enum For {
+    Anything,
+    Frames,
+    Playing,
+}
+
+/// The flags by name.
+const FLAGS: [(&str, Flag, Takes, For); 13] = [
+    ("--help", Flag::Help, Takes::Nothing, For::Anything),
+    ("--version", Flag::Version, Takes::Nothing, For::Anything),
+    ("--frame", Flag::Frame, Takes::Number(0, u64::MAX), For::Anything),
+    ("--from", Flag::From, Takes::Number(0, u64::MAX), For::Playing),
+    ("--threads", Flag::Threads, Takes::Number(1, MOST_THREADS), For::Anything),
+    ("--size", Flag::Size, Takes::Size, For::Anything),
+    ("--quality", Flag::Quality, Takes::Name(quality), For::Anything),
+    ("--scene", Flag::Scene, Takes::Name(scene), For::Anything),
+    ("--average", Flag::Average, Takes::Number(1, MOST_PATTERNS), For::Frames),
+    ("--view", Flag::View, if cfg!(luc_size) { Takes::Nothing } else { Takes::Name(view) }, For::Frames),
+    ("-o", Flag::Output, Takes::File, For::Frames),
+    ("--once", Flag::Once, Takes::Nothing, For::Playing),
+    ("--fullscreen", Flag::Fullscreen, Takes::Nothing, For::Playing),
+];
+
 /// Reads the arguments that follow the program's name.
 pub fn parse<'a>(args: &[&'a OsStr]) -> Result<Request<'a>, Text> {
     let mut options = Options {
@@ -69,77 +126,41 @@ pub fn parse<'a>(args: &[&'a OsStr]) -> Result<Request<'a>, Text> {
         threads: 0,
         fullscreen: false,
     };
-    let mut windowed: &[u8] = b"";
-    let mut still: &[u8] = b"";
+    let (mut windowed, mut still): (&[u8], &[u8]) = (b"", b"");
     let mut args = args.iter();
-    while let Some(&flag) = args.next() {
-        let flag = flag.as_encoded_bytes();
-        // Looks at the next argument as the value of `flag`.
-        let mut value = |what: &[u8], read: &mut dyn FnMut(&'a OsStr) -> Option<()>| match args.next() {
-            Some(&typed) => read(typed)
-                .ok_or_else(|| join(&[flag, b" wants ", what, b", not ", &quoted(typed.as_encoded_bytes())])),
-            None => Err(join(&[flag, b" wants ", what, b" after it"])),
+    while let Some(name) = args.next() {
+        let name = name.as_encoded_bytes();
+        let Some((_, flag, takes, good_for)) = FLAGS.iter().find(|flag| flag.0.as_bytes() == name) else {
+            return Err(join(&[&quoted(name), b" is not an option; --help lists them"]));
+        };
+        match good_for {
+            For::Anything => {}
+            For::Frames => still = name,
+            For::Playing => windowed = name,
+        }
+        let typed = if let Takes::Nothing = takes { Some(&OsStr::new("")) } else { args.next() };
+        let Some((n, height)) = typed.and_then(|typed| takes.read(typed.as_encoded_bytes())) else {
+            let found = match typed {
+                Some(typed) => join(&[b", not ", &quoted(typed.as_encoded_bytes())]),
+                None => join(&[b" after it"]),
+            };
+            return Err(join(&[name, b" wants ", &takes.words(), &found]));
         };
         match flag {
-            b"--help" => return Ok(Request::Help),
-            b"--version" => return Ok(Request::Version),
-            b"--frame" => value(&counting(0, u64::MAX), &mut |v| {
-                options.frame = Some(whole(v.as_encoded_bytes(), 0, u64::MAX)?);
-                Some(())
-            })?,
-            b"--from" => {
-                windowed = b"--from";
-                value(&counting(0, u64::MAX), &mut |v| {
-                    options.from = whole(v.as_encoded_bytes(), 0, u64::MAX)?;
-                    Some(())
-                })?
-            }
-            b"--threads" => value(&counting(1, MOST_THREADS), &mut |v| {
-                options.threads = whole(v.as_encoded_bytes(), 1, MOST_THREADS)? as usize;
-                Some(())
-            })?,
-            b"--size" => value(b"a width and height from 1x1 to 7680x4320, such as 1280x720", &mut |v| {
-                options.size = size(v.as_encoded_bytes())?;
-                Some(())
-            })?,
-            b"--quality" => value(&one_of(&mut qualities()), &mut |v| {
-                options.quality = Some(qualities().position(|name| v == name)?);
-                Some(())
-            })?,
-            b"--scene" => value(&one_of(&mut scenes()), &mut |v| {
-                options.scene = Some(scenes().position(|name| v == name)?);
-                Some(())
-            })?,
-            b"--average" => {
-                still = b"--average";
-                value(&counting(1, MOST_PATTERNS), &mut |v| {
-                    options.average = whole(v.as_encoded_bytes(), 1, MOST_PATTERNS)? as u32;
-                    Some(())
-                })?
-            }
-            b"--view" if cfg!(luc_size) => return Err(join(&[NO_VIEWS])),
-            b"--view" => {
-                still = b"--view";
-                value(&one_of(&mut views()), &mut |v| {
-                    options.view = Some(views().position(|name| v == name)?);
-                    Some(())
-                })?
-            }
-            b"-o" => value(b"a name ending in .png or .ppm, or - for standard output", &mut |v| {
-                still = b"-o";
-                let name = v.as_encoded_bytes();
-                options.output = Some(v);
-                (name == b"-" || name.ends_with(b".png") || name.ends_with(b".ppm")).then_some(())
-            })?,
-            b"--once" => {
-                windowed = b"--once";
-                options.once = true;
-            }
-            b"--fullscreen" => {
-                windowed = b"--fullscreen";
-                options.fullscreen = true;
-            }
-            _ => return Err(join(&[&quoted(flag), b" is not an option; --help lists them"])),
+            Flag::Help => return Ok(Request::Help),
+            Flag::Version => return Ok(Request::Version),
+            Flag::Frame => options.frame = Some(n),
+            Flag::From => options.from = n,
+            Flag::Threads => options.threads = n as usize,
+            Flag::Size => options.size = (n as u32, height as u32),
+            Flag::Quality => options.quality = Some(n as usize),
+            Flag::Scene => options.scene = Some(n as usize),
+            Flag::Average => options.average = n as u32,
+            Flag::View if cfg!(luc_size) => return Err(join(&[NO_VIEWS])),
+            Flag::View => options.view = Some(n as usize),
+            Flag::Output => options.output = typed.copied(),
+            Flag::Once => options.once = true,
+            Flag::Fullscreen => options.fullscreen = true,
         }
     }
     if options.frame.is_none() && !still.is_empty() {
@@ -154,32 +175,61 @@ pub fn parse<'a>(args: &[&'a OsStr]) -> Result<Request<'a>, Text> {
     Ok(Request::Run(options))
 }
 
-fn qualities() -> impl Iterator<Item = &'static str> {
-    Quality::PRESETS.iter().map(|(name, _)| *name)
+/// A list of names: that with an index, if there are so many.
+type Names = fn(usize) -> Option<&'static str>;
+
+fn quality(i: usize) -> Option<&'static str> {
+    Quality::PRESETS.get(i).map(|preset| preset.0)
 }
 
-fn views() -> impl Iterator<Item = &'static str> {
-    View::ALL.iter().map(|(name, _)| *name)
+fn view(i: usize) -> Option<&'static str> {
+    View::ALL.get(i).map(|view| view.0)
 }
 
-fn scenes() -> impl Iterator<Item = &'static str> {
-    show::PARTS.iter().map(|part| part.name)
+fn scene(i: usize) -> Option<&'static str> {
+    show::PARTS.get(i).map(|part| part.name)
 }
 
-fn size(typed: &[u8]) -> Option<(u32, u32)> {
-    let x = typed.iter().position(|&c| c == b'x')?;
-    let width = whole(&typed[..x], 1, LARGEST.0.into())?;
-    let height = whole(&typed[x + 1..], 1, LARGEST.1.into())?;
-    Some((width as u32, height as u32))
+fn list(names: Names) -> impl Iterator<Item = &'static str> {
+    (0..).map_while(names)
 }
 
-fn counting(least: u64, most: u64) -> Text {
-    join(&[b"a whole number from ", &number(least), b" to ", &number(most)])
+impl Takes {
+    /// What was typed, as a number, two for a size; none if it is not what is wanted.
+    fn read(self, typed: &[u8]) -> Option<(u64, u64)> {
+        let n = match self {
+            Takes::Nothing => 0,
+            Takes::Number(least, most) => whole(typed, least, most)?,
+            Takes::Size => {
+                let x = typed.iter().position(|&c| c == b'x')?;
+                let height = whole(&typed[x + 1..], 1, LARGEST.1.into())?;
+                return Some((whole(&typed[..x], 1, LARGEST.0.into())?, height));
+            }
+            Takes::Name(names) => list(names).position(|name| name.as_bytes() == typed)? as u64,
+            Takes::File => {
+                (typed == b"-" || typed.ends_with(b".png") || typed.ends_with(b".ppm")).then_some(0)?
+            }
+        };
+        Some((n, 0))
+    }
+
+    /// What is wanted, in words.
+    fn words(self) -> Text {
+        match self {
+            Takes::Nothing => Text::new(),
+            Takes::Number(least, most) => {
+                join(&[b"a whole number from ", &number(least), b" to ", &number(most)])
+            }
+            Takes::Size => join(&[b"a width and height from 1x1 to 7680x4320, such as 1280x720"]),
+            Takes::Name(names) => one_of(names),
+            Takes::File => join(&[b"a name ending in .png or .ppm, or - for standard output"]),
+        }
+    }
 }
 
-fn one_of(names: &mut dyn Iterator<Item = &str>) -> Text {
+fn one_of(names: Names) -> Text {
     let mut out = join(&[b"one of"]);
-    for name in names {
+    for name in list(names) {
         out.push(b' ');
         out.extend_from_slice(name.as_bytes());
     }
@@ -209,13 +259,13 @@ Lúč, a ray-traced intro. Esc or closing the window ends it.
   --size WxH       picture size, 1x1 to 7680x4320 (1280x720)
   --quality NAME   "
             .as_bytes(),
-        &one_of(&mut qualities()),
+        &one_of(quality),
         b"
                    (a frame: high; playing: whatever holds 60 frames a second)
   --average K      a frame as the mean of K sample patterns, 1 to 1024 (1)
   --scene NAME     only this part, N counts from its start;
                    ",
-        &one_of(&mut scenes()),
+        &one_of(scene),
         b"
 ",
         VIEW_HELP,

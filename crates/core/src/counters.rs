@@ -28,6 +28,7 @@ counters! {
     SphereTests "tests of spheres",
     PlaneTests "tests of planes",
     CylinderTests "tests of cylinders",
+    EndlessTests "tests of cylinders without ends",
     ConeTests "tests of cones",
     TriangleTests "tests of triangles",
     FieldTests "tests of fields",

@@ -16,6 +16,8 @@ pub const FIELDS: bool = cfg!(feature = "fields");
 pub const FIELD_OCCLUSION: bool = cfg!(feature = "field-occlusion");
 /// Beams of light.
 pub const BEAMS: bool = cfg!(feature = "beams");
+/// Bounds of cylinders without ends; without it their shadows are sought everywhere.
+pub const ENDLESS: bool = cfg!(feature = "endless");
 /// Bounces of diffuse light.
 pub const BOUNCES: bool = cfg!(feature = "bounces");
 /// Mirrors of rough surfaces by several rays.
@@ -26,12 +28,13 @@ pub const MESHES: bool = cfg!(feature = "meshes");
 pub const SMOOTH: bool = cfg!(feature = "smooth");
 
 /// Each feature with the counter that shows it at work.
-pub const ALL: [(&str, Counter); 9] = [
+pub const ALL: [(&str, Counter); 10] = [
     ("ggx", Counter::Ggx),
     ("bumps", Counter::Bumps),
     ("fields", Counter::FieldSteps),
     ("field-occlusion", Counter::FieldOcclusion),
     ("beams", Counter::Beams),
+    ("endless", Counter::EndlessTests),
     ("bounces", Counter::ScatterRays),
     ("rough", Counter::RoughRays),
     ("meshes", Counter::NodeVisits),

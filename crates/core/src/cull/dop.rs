@@ -6,6 +6,7 @@
 //! an axis u come from the two tangents through the eye in the plane (u, z):
 //! k = (u z ± r sqrt(u² + z² - r²)) / (z² - r²).
 
+use crate::features;
 use crate::math::lanes::{F, splat};
 use crate::scene::{Beam, Scene};
 use crate::trace::Shape;
@@ -19,6 +20,12 @@ const SIN: [f32; 8] =
 
 /// Nearest depth at which points are projected, world units.
 const NEAR: f32 = 1e-3;
+
+/// Two unit vectors across a third and each other.
+#[inline(never)]
+fn across(axis: Vec3) -> (Vec3, Vec3) {
+    axis.any_orthonormal_pair()
+}
 
 /// A point to look from and the directions right, up and forward.
 #[derive(Clone, Copy, Debug)]
@@ -38,7 +45,7 @@ impl View {
     /// A view from `origin` towards `target`.
     pub fn towards(origin: Vec3, target: Vec3) -> Self {
         let forward = (target - origin).normalize_or(Vec3::NEG_Y);
-        let (right, up) = forward.any_orthonormal_pair();
+        let (right, up) = across(forward);
         Self { origin, world_from_view: Mat3::from_cols(right, up, forward) }
     }
 }
@@ -124,10 +131,10 @@ impl Dop {
         Dop { lo, hi, near: c.z - r, unbounded: false, ..dop }
     }
 
-    /// Bounds the convex hull of points (view coordinates) along the axes given.
+    /// Bounds the convex hull of `count` points (view coordinates) along the axes given.
     #[inline(never)]
-    fn hull(mut dop: Dop, points: impl Iterator<Item = Vec3>) -> Dop {
-        for p in points {
+    fn hull(mut dop: Dop, count: usize, point: &dyn Fn(usize) -> Vec3) -> Dop {
+        for p in (0..count).map(point) {
             if p.z < NEAR {
                 return Dop::EVERYWHERE;
             }
@@ -150,17 +157,16 @@ impl Dop {
     #[inline(never)]
     pub fn cuboid(view: &View, centre: Vec3, axes: Mat3, half: Vec3) -> Dop {
         let sign = |i: usize, bit: usize| if i & bit == 0 { -1.0 } else { 1.0 };
-        let corners = (0..8).map(|i| {
+        Dop::hull(Dop::along(Vec2::X), 8, &|i| {
             let out = Vec3::new(sign(i, 1), sign(i, 2), sign(i, 4)) * half;
             view.local(centre + axes * out)
-        });
-        Dop::hull(Dop::along(Vec2::X), corners)
+        })
     }
 
     /// Bound of the hull of two discs across `axis` (world) of radii `r` around `a` and `b`.
     #[inline(never)]
     fn discs(view: &View, axis: Vec3, (a, ra): (Vec3, f32), (b, rb): (Vec3, f32)) -> Dop {
-        let (u, v) = axis.any_orthonormal_pair();
+        let (u, v) = across(axis);
         // A regular polygon of sixteen corners around a circle: 1 / cos(pi/16).
         let around = 1.019_591_2;
         let corner = move |k: usize| {
@@ -171,15 +177,15 @@ impl Dop {
             let p = view.local(p);
             Vec2::new(p.x, p.y) / p.z.max(NEAR)
         };
-        let points = (0..32).map(|k| {
+        let point = |k: usize| {
             let (centre, r) = if k < 16 { (a, ra) } else { (b, rb) };
             view.local(centre + corner(k & 15) * r)
-        });
+        };
         // The hull's long sides run about from rim to rim, where it is widest across the axis.
         let along = flat(b) - flat(a);
         let side = view.world_from_view * along.perp().normalize_or(Vec2::X).extend(0.0);
         let edge = |sign: f32| flat(b + side * (rb * sign)) - flat(a + side * (ra * sign));
-        Dop::hull(Dop::with_edges(along, [edge(1.0), edge(-1.0)]), points)
+        Dop::hull(Dop::with_edges(along, [edge(1.0), edge(-1.0)]), 32, &point)
     }
 
     /// Adds the point infinitely far in direction `v` (view coordinates), if it is not behind.
@@ -250,20 +256,21 @@ impl Dop {
                 let end = s.base + s.axis * s.length;
                 Dop::discs(view, s.axis, (s.base, s.radius), (end, s.radius))
             }
-            Shape::Cylinder(s) => Dop::bar(view, s.base, s.axis, s.radius),
+            Shape::Cylinder(s) if features::ENDLESS => Dop::bar(view, s.base, s.axis, s.radius),
+            Shape::Cylinder(_) => Dop::EVERYWHERE,
             Shape::Cone(s) if s.range[1] < f32::INFINITY => {
                 let end = |h: f32| (s.apex + s.axis * h, s.slope * h);
                 Dop::discs(view, s.axis, end(s.range[0]), end(s.range[1]))
             }
             Shape::Cone(_) => Dop::EVERYWHERE,
             Shape::Triangle(s) => {
-                let [a, b, c] = s.corners.map(|p| view.local(p));
-                let edge = |p: Vec3, q: Vec3| (q / q.z.max(NEAR) - p / p.z.max(NEAR)).truncate();
-                let edges = [edge(a, b), edge(b, c), edge(c, a)];
+                let corners = s.corners.map(|p| view.local(p));
+                let [a, b, c] = corners.map(|p| (p / p.z.max(NEAR)).truncate());
+                let edges = [b - a, c - b, a - c];
                 let longest = edges
                     .into_iter()
                     .fold(Vec2::ZERO, |m, e| if e.length_squared() > m.length_squared() { e } else { m });
-                Dop::hull(Dop::with_edges(longest, [edges[0], edges[1]]), [a, b, c].into_iter())
+                Dop::hull(Dop::with_edges(longest, [edges[0], edges[1]]), 3, &|i| corners[i])
             }
             Shape::Field(s) => Dop::cuboid(view, (s.lo + s.hi) * 0.5, Mat3::IDENTITY, (s.hi - s.lo) * 0.5),
         }

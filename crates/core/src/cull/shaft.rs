@@ -34,12 +34,13 @@ fn middle(shape: Shape, lamp: Vec3) -> Vec3 {
     }
 }
 
-/// The shafts of one lamp to each shape.
-pub fn shafts(scene: &Scene, lamp: &Lamp) -> Vec<Shaft> {
-    (0..scene.shape_count())
+/// The shafts of each lamp to each shape, lamp after lamp.
+pub fn shafts(scene: &Scene, lamps: &[Lamp]) -> Vec<Shaft> {
+    let count = scene.shape_count();
+    (0..lamps.len() * count)
         .map(|i| {
-            let shape = scene.shape(i);
-            let view = View::towards(lamp.position, middle(shape, lamp.position));
+            let (origin, shape) = (lamps[i / count].position, scene.shape(i % count));
+            let view = View::towards(origin, middle(shape, origin));
             Shaft { view, dop: Dop::of(&view, shape) }
         })
         .collect()

@@ -152,7 +152,7 @@ fn shapes_that_cast_a_shadow_are_among_the_candidates() {
             let mut scene = one(&mut random, kind);
             let position = random.vector(-2, 5);
             scene.lights.push(Light { position, colour: Vec3::ONE, kind: LightKind::Point });
-            let shafts = shafts(&scene, &lamps(&scene)[0]);
+            let shafts = shafts(&scene, &lamps(&scene)[..1]);
             // Points behind the shape, in a small region: a patch or a ball.
             let behind = point(&mut random, &scene);
             let hub = position + (behind - position) * (1.0 + random.size(-10, 4));

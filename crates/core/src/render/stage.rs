@@ -40,8 +40,8 @@ pub struct Stage<'a> {
     pub nodes: Vec<FieldNode>,
     /// Bounds of the beams on the screen.
     pub beams: Vec<Dop>,
-    /// Bounds of the shapes as the lamps that cast shadows see them.
-    pub shafts: Vec<Vec<Shaft>>,
+    /// Bounds of the shapes as the lamps that cast shadows see them; see [`Stage::shafts`].
+    shafts: Vec<Shaft>,
     /// From linear light to display values.
     pub display: Display,
 }
@@ -67,7 +67,7 @@ impl<'a> Stage<'a> {
             }
         }
         let lamps = lamps(scene);
-        let shafts = lamps.iter().take(MAX_LAMPS).map(|lamp| shafts(scene, lamp)).collect();
+        let shafts = shafts(scene, &lamps[..lamps.len().min(MAX_LAMPS)]);
         let pixel = 2.0 * scene.camera.half_width() / width as f32;
         Self {
             scene,
@@ -87,6 +87,11 @@ impl<'a> Stage<'a> {
             shafts,
             display: Display::new(&scene.grade),
         }
+    }
+
+    /// Bounds of all shapes for each lamp that casts shadows.
+    pub fn shafts(&self) -> std::slice::Chunks<'_, Shaft> {
+        self.shafts.chunks(self.dops.len().max(1))
     }
 
     /// Unit vector along the view axis.

@@ -143,7 +143,7 @@ fn shadow_casters(stage: &Stage, samples: &Samples) -> [u64; MAX_LAMPS] {
     let Some((lo, hi)) = bounds.corners() else { return masks };
     // Curved patches bulge a little out of the box of their corners.
     let region = Region::cuboid(lo, hi, 0.02 * (hi - lo).length());
-    for (mask, shafts) in masks.iter_mut().zip(&stage.shafts) {
+    for (mask, shafts) in masks.iter_mut().zip(stage.shafts()) {
         *mask = occluders(stage.scene, shafts, u64::MAX, None, &region);
     }
     masks
@@ -281,7 +281,7 @@ impl Surroundings {
         let across = (points[3] - points[0]).length().max((points[2] - points[1]).length());
         let region = Region::patch(&points, if flat { 0.0 } else { 0.1 * across });
         let material = &stage.scene.materials[stage.scene.shape(own).material()];
-        for (lamp, shafts) in stage.shafts.iter().enumerate() {
+        for (lamp, shafts) in stage.shafts().enumerate() {
             let position = stage.lamps[lamp].position;
             let faces = known.corners.iter().any(|s| s.normal().dot(position - s.point()) > 0.0);
             let lit = faces && known.corners.iter().all(|s| s.code(lamp) != BLOCKED);

@@ -66,7 +66,7 @@ impl Boxes {
             let reach = lo.abs().max(hi.abs()).length() + stage.scene.camera.position.length();
             let off = if stage.scene.fields.is_empty() { 0.0 } else { 4.0 * stage.quality.epsilon };
             let region = Region::cuboid(lo, hi, 4e-6 * reach + off);
-            for (mask, shafts) in masks.iter_mut().zip(&stage.shafts) {
+            for (mask, shafts) in masks.iter_mut().zip(stage.shafts()) {
                 *mask |= occluders(stage.scene, shafts, !*mask, Some(*shape as usize), &region);
             }
         }

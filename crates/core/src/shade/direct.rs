@@ -48,6 +48,7 @@ pub struct Local {
 }
 
 /// Mean light from the half space around a unit direction, by its height.
+#[inline(never)]
 pub fn ambient(stage: &Stage, direction: V3) -> V3 {
     let [below, above] = stage.scene.ambient;
     let x = direction.y * splat(0.5) + splat(0.5);

@@ -173,6 +173,7 @@ impl Shape<'_> {
         match self {
             Shape::Sphere(_) => Counter::SphereTests,
             Shape::Plane(_) => Counter::PlaneTests,
+            Shape::Cylinder(s) if s.length == f32::INFINITY => Counter::EndlessTests,
             Shape::Cylinder(_) => Counter::CylinderTests,
             Shape::Cone(_) => Counter::ConeTests,
             Shape::Triangle(_) => Counter::TriangleTests,
