@@ -229,7 +229,7 @@ static STILL: Still = Still {
     materials: &[
         surface(v(0.2, 0.28, 0.42), 0.3, 0.5),
         surface(v(0.1, 0.135, 0.2), 0.55, 0.1),
-        Material { texture: bumps(0.9, 0.35, 0.04), ..polished(v(0.05, 0.065, 0.09), 0.14, 1.6) },
+        Material { texture: bumps(0.9, 0.35, 0.04), ..polished(v(0.05, 0.065, 0.09), 0.05, 1.6) },
     ],
     lights: &[
         // The sun, from where it really shines.
@@ -263,7 +263,8 @@ pub fn scene(frame: u64) -> Scene {
     let t = seconds(frame);
     let z = track(&Z, t);
     let position = v(-1.5 * (z / 12.0).max(-0.6), track(&Y, t), z);
-    let target = position + v(0.1, track(&TILT, t), -1.0);
+    let tilt = track(&TILT, t);
+    let target = position + v(0.1, tilt, -1.0);
     let mut s = STILL.scene();
     s.camera = Camera { position, target, roll: degrees(track(&ROLL, t)), fov: degrees(54.0) };
     for glow in &mut s.background.glows {
@@ -271,6 +272,10 @@ pub fn scene(frame: u64) -> Scene {
     }
     s.lights[1].position += position;
     s.meshes = cathedral(t);
+    if tilt > 0.27 {
+        // The floor has left the picture.
+        s.planes.clear();
+    }
     s.beams = (0..5).map(|k| shaft_of_light(k, t)).collect();
     s
 }
