@@ -270,7 +270,7 @@ fn what_lies_in_a_pyramid_is_found() {
 fn ball(smooth: bool) -> Arc<Mesh> {
     let ring = |i: usize| {
         let (sin, cos) = sin_cos(i as f32 / 12.0 * std::f32::consts::PI);
-        (Vec3::Y * -cos, if i % 12 == 0 { 0.0 } else { sin })
+        (Vec3::Y * -cos, if i.is_multiple_of(12) { 0.0 } else { sin })
     };
     let mut triangles = Vec::new();
     lathe(&mut triangles, &std::array::from_fn::<_, 13, _>(ring), 24, 0.0);
