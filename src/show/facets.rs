@@ -229,7 +229,7 @@ static STILL: Still = Still {
     materials: &[
         surface(v(0.2, 0.28, 0.42), 0.3, 0.5),
         surface(v(0.1, 0.135, 0.2), 0.55, 0.1),
-        Material { texture: bumps(0.9, 0.35, 0.04), ..polished(v(0.05, 0.065, 0.09), 0.05, 1.6) },
+        Material { texture: bumps(0.9, 0.35, 0.04), ..polished(v(0.05, 0.065, 0.09), 0.14, 1.6) },
     ],
     lights: &[
         // The sun, from where it really shines.
