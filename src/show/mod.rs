@@ -4,7 +4,6 @@
 //! pure function of its local frame, so any frame can be rendered on its own and nothing drifts.
 
 mod blobs;
-#[allow(dead_code, reason = "a part that is being made")]
 mod facets;
 mod gold;
 mod luc;
@@ -37,6 +36,7 @@ pub const PARTS: &[Part] = &[
     Part { name: "luc", frames: 6 * BAR, scene: luc::scene },
     Part { name: "mirror", frames: 16 * BAR, scene: mirror::scene },
     Part { name: "gold", frames: 16 * BAR, scene: gold::scene },
+    Part { name: "facets", frames: 12 * BAR, scene: facets::scene },
     Part { name: "blobs", frames: 10 * BAR, scene: blobs::scene },
 ];
 
