@@ -62,12 +62,13 @@ pub(super) fn fill(
     let textured = first.material(stage).is_some_and(|m| m.texture.is_visible());
     // Where the colour itself runs smoothly the exact surface would show the same.
     let smooth = equal || known.colour_error() <= stage.quality.tolerance * 0.25;
-    let rung = match (smooth, textured) {
-        _ if first.relief_within(stage, cell.size) => Rung::Surface,
+    let most = match (smooth, textured) {
         (true, false) => Rung::Colour,
-        (true, true) => stage.rung(first.id()).min(Rung::Light),
-        (false, _) => stage.rung(first.id()),
+        (true, true) => Rung::Light,
+        (false, _) => Rung::Surface,
     };
+    let rung =
+        if first.relief_within(stage, cell.size) { Rung::Surface } else { most.min(stage.rung(first.id())) };
     if features::BEAMS && !stage.scene.beams.is_empty() {
         fill_nearness(cell, known, tile);
     }

@@ -154,6 +154,5 @@ pub fn mirror(
 
 /// The lanes of `which` whose directions leave the surface: about bent normals some lie under it.
 fn above(s: &Surface, direction: V3, which: F) -> u32 {
-    let facing = V3::select(s.inside, -s.outward, s.outward);
-    (which & direction.dot(facing).simd_gt(F::ZERO)).to_bitmask()
+    (which & direction.dot(s.facing).simd_gt(F::ZERO)).to_bitmask()
 }
