@@ -215,3 +215,44 @@ fn averaged_patterns_come_closer_to_the_reference() {
     assert!(ladder.windows(2).all(|w| w[1] > w[0] + 3.0), "{ladder:?}");
     assert_eq!(of(4), of(4));
 }
+
+/// Posts and balls of one textured stone, lit from the side, on a mirror.
+fn stones(pattern: Pattern) -> Scene {
+    let texture = Texture { pattern, scale: 2.5, grain: 0.3, bump: 0.02 };
+    let mut scene = shore();
+    for k in 1..3 {
+        scene.materials[k].texture = texture;
+    }
+    scene.materials[0].texture = Texture::NONE;
+    scene.lights[0].position = Vec3::new(-20.0, 25.0, 35.0);
+    scene
+}
+
+#[test]
+fn each_pattern_is_within_40_db_and_counted_only_where_it_is() {
+    let patterns = [
+        (Pattern::Noise, Counter::TextureLookups),
+        (Pattern::Cells, Counter::Cells),
+        (Pattern::Stripes, Counter::Stripes),
+        (Pattern::Brick, Counter::Brick),
+        (Pattern::Scratches, Counter::Scratches),
+    ];
+    let mut pictures: Vec<Vec<u32>> = Vec::new();
+    for (pattern, own) in patterns {
+        let scene = stones(pattern);
+        let quality = preset("high");
+        let (adaptive, renderer) = render(&scene, (640, 360), &quality);
+        let (full, _) = render(&scene, (640, 360), &quality.every_pixel());
+        let db = psnr(&full, &adaptive);
+        println!("{pattern:?}: {db:.2} dB");
+        assert!(db >= 40.0, "{pattern:?}: {db:.2} dB");
+        let plan = Plan::of(&scene, &quality);
+        for (_, counter) in patterns {
+            let count = renderer.counters.get(counter);
+            assert_eq!(count > 0, plan.names(counter), "{pattern:?}: {counter:?} {count}");
+            assert_eq!(count > 0, counter == own || counter == Counter::TextureLookups, "{pattern:?}");
+        }
+        assert!(!pictures.contains(&full), "{pattern:?} looks like another");
+        pictures.push(full);
+    }
+}

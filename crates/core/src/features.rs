@@ -27,8 +27,17 @@ pub const MESHES: bool = cfg!(feature = "meshes");
 /// Meshes with interpolated normals.
 pub const SMOOTH: bool = cfg!(feature = "smooth");
 
+/// See [`crate::scene::Pattern::Cells`].
+pub const CELLS: bool = cfg!(feature = "cells");
+/// See [`crate::scene::Pattern::Stripes`].
+pub const STRIPES: bool = cfg!(feature = "stripes");
+/// See [`crate::scene::Pattern::Brick`].
+pub const BRICK: bool = cfg!(feature = "brick");
+/// See [`crate::scene::Pattern::Scratches`].
+pub const SCRATCHES: bool = cfg!(feature = "scratches");
+
 /// Each feature with the counter that shows it at work.
-pub const ALL: [(&str, Counter); 10] = [
+pub const ALL: [(&str, Counter); 14] = [
     ("ggx", Counter::Ggx),
     ("bumps", Counter::Bumps),
     ("fields", Counter::FieldSteps),
@@ -39,4 +48,8 @@ pub const ALL: [(&str, Counter); 10] = [
     ("rough", Counter::RoughRays),
     ("meshes", Counter::NodeVisits),
     ("smooth", Counter::SmoothFacets),
+    ("cells", Counter::Cells),
+    ("stripes", Counter::Stripes),
+    ("brick", Counter::Brick),
+    ("scratches", Counter::Scratches),
 ];

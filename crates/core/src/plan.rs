@@ -8,7 +8,7 @@ use crate::counters::Counter;
 use crate::mesh::Instance;
 use crate::quality::{Quality, Rung};
 use crate::sample::ROUGH;
-use crate::scene::{Field, LightKind, Material, Scene, Shading};
+use crate::scene::{Field, LightKind, Material, Pattern, Scene, Shading};
 
 /// The machinery that a frame calls for, as the counters that it moves.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -33,6 +33,7 @@ impl Plan {
         let grain = materials().any(|m| m.texture.grain > 0.0);
         let bumps = materials().any(|m| m.texture.bump > 0.0);
         let textured = grain || bumps;
+        let pattern = |p| materials().any(|m| m.texture.is_visible() && m.texture.pattern == p);
         let known = quality.rung == Rung::Surface || (quality.rung == Rung::Light && textured);
         let calls = [
             (Counter::PrimaryRays, true),
@@ -61,6 +62,10 @@ impl Plan {
             (Counter::CookTorrance, lit && scene.shading == Shading::CookTorrance),
             (Counter::Ggx, lit && scene.shading == Shading::Ggx),
             (Counter::TextureLookups, grain),
+            (Counter::Cells, pattern(Pattern::Cells)),
+            (Counter::Stripes, pattern(Pattern::Stripes)),
+            (Counter::Brick, pattern(Pattern::Brick)),
+            (Counter::Scratches, pattern(Pattern::Scratches)),
             (Counter::Bumps, bumps),
             (Counter::FogSegments, scene.fog.is_some()),
             (Counter::Beams, !scene.beams.is_empty()),

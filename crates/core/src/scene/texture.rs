@@ -7,6 +7,26 @@ pub enum Pattern {
     /// Value noise.
     #[default]
     Noise,
+    /// Rounded stones with creases between them.
+    Cells,
+    /// Level layers.
+    Stripes,
+    /// Bricks 1 wide and ½ high with joints, on the plane that the surface faces most.
+    Brick,
+    /// Thin long grooves on that plane.
+    Scratches,
+}
+
+impl Pattern {
+    /// Width of the finest detail, cells.
+    pub const fn finest(self) -> f32 {
+        match self {
+            Pattern::Noise => 1.0,
+            Pattern::Cells | Pattern::Stripes => 0.5,
+            Pattern::Brick => 0.16,
+            Pattern::Scratches => 0.12,
+        }
+    }
 }
 
 /// A pattern in world space that varies a surface's albedo, its normal, or both.

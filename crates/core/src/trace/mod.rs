@@ -6,6 +6,7 @@
 mod field;
 mod hit;
 mod occlusion;
+mod pattern;
 mod plane;
 mod ramp;
 mod round;

@@ -13,7 +13,15 @@ use crate::counters::{Counter, Counters};
 use crate::features;
 use crate::math::lanes::{F, V3, splat};
 use crate::quality::Quality;
-use crate::scene::{Channel, Field, Join, Material, Scene, Sphere};
+use crate::scene::{Channel, Field, Join, Material, Pattern, Scene, Sphere};
+
+/// The patterns but noise, each with what counts it.
+pub const PATTERNS: [(Pattern, Counter); 4] = [
+    (Pattern::Cells, Counter::Cells),
+    (Pattern::Stripes, Counter::Stripes),
+    (Pattern::Brick, Counter::Brick),
+    (Pattern::Scratches, Counter::Scratches),
+];
 
 /// Surfaces of a packet. Lanes without a hit hold finite nonsense.
 pub struct Surface {
@@ -51,12 +59,17 @@ impl Surface {
         self.material[channel as usize]
     }
 
-    /// Counts the patterns that were evaluated for these surfaces.
+    /// Counts the textures that were evaluated for these surfaces.
     #[inline(always)]
     pub fn count(&self, counters: &mut Counters) {
         let lanes = |c| self.value(c).simd_gt(F::ZERO).to_bitmask().count_ones() as usize;
         counters.add(Counter::TextureLookups, lanes(Channel::Grain));
         counters.add(Counter::Bumps, lanes(Channel::Bump));
+        let visible = (self.value(Channel::Grain) + self.value(Channel::Bump)).simd_gt(F::ZERO);
+        for (pattern, counter) in PATTERNS {
+            let own = visible & self.value(Channel::Pattern).simd_eq(splat(pattern as u32 as f32));
+            counters.add(counter, own.to_bitmask().count_ones() as usize);
+        }
     }
 
     /// A colour of the material.

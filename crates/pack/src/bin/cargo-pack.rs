@@ -1,7 +1,7 @@
 //! `cargo pack`: builds the intro for size and packs it into one file under 65,536 bytes.
 
 use lexopt::prelude::*;
-use luc_pack::report::{LIMIT, Report, costs::Costs, symbols};
+use luc_pack::report::{LIMIT, Report, costs::Costs, page, symbols};
 use luc_pack::{Error, Method, Options, check, pack_elf_as, size_build, write_executable};
 use std::process::ExitCode;
 
@@ -12,7 +12,8 @@ Builds the intro for size and packs it. Writes target/pack/luc, the packed file,
 target/pack/luc-safe, the same program unpacked, and prints what became of each byte.
 
       --check        run both files too, and compare what they do
-      --report       print what each crate, module and function costs packed
+      --report       print what each crate, module and function costs packed, and write
+                     target/pack/report.html, which also shows what changed since the last
       --method NAME  cm: context mixing, smallest (default); lzma: starts faster;
                      raw: no compression
   -h, --help         this text
@@ -79,11 +80,17 @@ fn pack(arguments: &Arguments) -> Result<Option<String>, Error> {
     write_executable(&safe, &packed.stripped)?;
     write_executable(&file, &packed.file)?;
 
+    let report = Report::new(linked.len(), &packed);
     if arguments.report && !packed.bits.is_empty() {
         let symbols = symbols::symbols(&linked, packed.stripped.len())?;
-        print!("{}", Costs::new(&symbols, &packed.bits));
+        let costs = Costs::new(&symbols, &packed.bits);
+        print!("{costs}");
+        let (list, html) = (output.join("report.tsv"), output.join("report.html"));
+        let last = std::fs::read_to_string(&list).unwrap_or_default();
+        let text = page::page(&report, &costs, &symbols, &packed.bits, &last);
+        std::fs::write(&html, text).map_err(Error::file(&html))?;
+        std::fs::write(&list, page::list(&costs)).map_err(Error::file(&list))?;
     }
-    let report = Report::new(linked.len(), &packed);
     print!("{report}");
     if report.total > LIMIT {
         return Ok(Some(format!("{} bytes over the limit of {LIMIT}", report.total - LIMIT)));

@@ -9,9 +9,9 @@
 //! them; its sum is corrected by two tables that learn how far such a prediction is to be trusted after
 //! this byte.
 //!
-//! Which facts the contexts see (`SEEN`) was found by a random search that flipped, copied and dropped,
-//! and kept what made the intro and gzip's program smaller; four other programs that it didn't know
-//! became as much smaller as these.
+//! Which facts the contexts see (`SEEN`) was found by a random search that flipped, copied, added and dropped
+//! and kept what made the intro and gzip smaller. Programs that it didn't know (bc, mawk, grotty) became 2.8 to 3.7 %
+//! smaller by it and the mixer of mixers, gzip 3.4 %, the intro 5.7 %.
 //!
 //! All memory is part of [`Model`], which starts as zeros.
 //!
@@ -23,13 +23,13 @@ use super::x86::{Part, Walker, mix};
 
 /// The facts that each context sees: bit i stands for fact i in [`Model::look_around`].
 const SEEN: [u32; CONTEXTS] = [
-    0x00000001, 0x00000003, 0x0000003b, 0x004003c0, 0x000573c0, 0x1005c3c0, 0x0011b3c8, 0x00001140,
-    0x00000006, 0x00002140, 0x01000008, 0x05000008, 0x00000840, 0x00021840, 0x5805e380, 0x00092bc0,
-    0x001010c0, 0x000223c0, 0x0000e3c0, 0x008007e0, 0x000010c0, 0x00000002, 0x000813c0, 0x00001540,
-    0x00022041, 0x000033c8, 0x00201040, 0x0800e3c0, 0x00010140, 0x02001140, 0x00000005, 0x01081340,
+    0x00000001, 0x00000003, 0x0000003b, 0x004003c0, 0x000573c0, 0x100dc3c0, 0x00083150, 0x00001140,
+    0x00000006, 0x00002140, 0x01000008, 0x05000008, 0x00000840, 0x00021840, 0x5804c380, 0x00092bc0,
+    0x000223c0, 0x0000e3c0, 0x000010c0, 0x00000002, 0x000813c0, 0x00101040, 0x00022041, 0x200033c8,
+    0x00201040, 0x0800e3c0, 0x00010040, 0x02001140, 0x00000005, 0x01001240, 0x40021860,
 ];
 /// Number of contexts.
-pub const CONTEXTS: usize = 32;
+pub const CONTEXTS: usize = 31;
 /// Opinions, in fours: three for each context, then the match model's and a constant.
 const FOURS: usize = (3 * CONTEXTS + 2).div_ceil(4);
 /// Mixers.

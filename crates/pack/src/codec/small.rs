@@ -68,7 +68,7 @@ impl Model<'_> {
         let error = bit as f32 - self.probability;
         for &place in &self.places {
             let cell = &mut self.cells[place & ((1 << CELL_BITS) - 1)];
-            cell.weight += error * 0.5 / (1.0 + cell.seen * 0.08);
+            cell.weight += error * 0.5 / (1.0 + cell.seen * 0.04);
             cell.seen += 1.0;
         }
         self.partial = self.partial << 1 | bit;

@@ -1,6 +1,7 @@
 //! What `cargo pack` prints: where the bytes of the file go.
 
 pub mod costs;
+pub mod page;
 pub mod symbols;
 
 use crate::Packed;

@@ -65,7 +65,7 @@ pub fn build(root: &Path, output: &Path) -> Result<PathBuf, Error> {
         .env("RUSTC_BOOTSTRAP", "1")
         .env("CARGO_ENCODED_RUSTFLAGS", RUSTFLAGS.join("\x1f"))
         .env("CFLAGS_x86_64_unknown_linux_gnu", CFLAGS);
-    if let Some(source) = std_source::prepare(&toolchain.library, &output.join("std"))? {
+    if let Some(source) = std_source::prepare(&toolchain.library, &workspace.join("std"))? {
         command.env(std_source::VARIABLE, source);
     }
     let status = command.status().map_err(Error::file(&toolchain.cargo))?;

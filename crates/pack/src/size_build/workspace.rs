@@ -16,6 +16,10 @@ use std::path::{Path, PathBuf};
 /// The target that the size build is for.
 pub const TARGET: &str = "x86_64-unknown-linux-gnu";
 
+/// What is replaced lies in the workspace without being part of it: what cargo calls a crate inside, and with
+/// that the order of functions in the file, doesn't hang on the folder that the project lies in.
+const OWN_WORKSPACE: &str = "[workspace]\nexclude = [\"deps\", \"std\"]";
+
 /// A dependency as cargo has downloaded it.
 struct Dependency {
     /// Name and version.
@@ -26,23 +30,24 @@ struct Dependency {
 /// Makes the workspace up to date and returns its directory.
 pub fn prepare(root: &Path, output: &Path, toolchain: &Toolchain) -> Result<PathBuf, Error> {
     let metadata = metadata(root, toolchain)?;
+    let workspace = output.join("workspace");
     let read = |name: &str| {
         let dependency = find(&metadata, name)?;
         Source::read(&dependency.package, &dependency.directory)
     };
     let mut minifb = read("minifb")?;
     let mut x11_dl = read("x11-dl")?;
-    trim::minifb(&mut minifb, &trim::named_keys(root)?)?;
-    trim::x11_dl(&mut x11_dl, &trim::called_functions(&minifb)?)?;
+    trim::minifb::trim(&mut minifb, &trim::minifb::named_keys(root)?)?;
+    trim::x11_dl::trim(&mut x11_dl, &trim::x11_dl::called_functions(&minifb)?)?;
     let mut crossbeam_deque = read("crossbeam-deque")?;
-    trim::crossbeam_deque(&mut crossbeam_deque)?;
+    trim::crossbeam_deque::trim(&mut crossbeam_deque)?;
     let mut rayon_core = read("rayon-core")?;
-    trim::rayon_core(&mut rayon_core)?;
+    trim::rayon_core::trim(&mut rayon_core)?;
     let mut wide = read("wide")?;
     trim::wide(&mut wide)?;
 
     let mut replaced = Vec::new();
-    let mut manifest = read_text(&root.join("Cargo.toml"))?;
+    let mut manifest = read_text(&root.join("Cargo.toml"))?.replacen("[workspace]", OWN_WORKSPACE, 1);
     manifest.push_str("\n[patch.crates-io]\n");
     let replacements = [
         ("minifb", minifb),
@@ -52,11 +57,10 @@ pub fn prepare(root: &Path, output: &Path, toolchain: &Toolchain) -> Result<Path
         ("wide", wide),
     ];
     for (name, source) in replacements {
-        source.write(&output.join("deps").join(name))?;
-        manifest.push_str(&format!("{name} = {{ path = \"../deps/{name}\" }}\n"));
+        source.write(&workspace.join("deps").join(name))?;
+        manifest.push_str(&format!("{name} = {{ path = \"deps/{name}\" }}\n"));
         replaced.push(name);
     }
-    let workspace = output.join("workspace");
     std::fs::create_dir_all(&workspace).map_err(Error::file(&workspace))?;
     link_everything(root, &workspace)?;
     write_if_new(&workspace.join("Cargo.toml"), manifest.as_bytes())?;

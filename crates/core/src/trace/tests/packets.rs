@@ -6,13 +6,15 @@ use crate::math::lanes::{F, TRUE, splat as all};
 use crate::quality::Quality;
 use crate::render::Stage;
 use crate::scene::{
-    Cone, Cylinder, Field, Join, Light, LightKind, Material, Node, Plane, Scene, Shading, Sphere, Texture,
-    Triangle,
+    Cone, Cylinder, Field, Join, Light, LightKind, Material, Node, Pattern, Plane, Scene, Shading, Sphere,
+    Texture, Triangle,
 };
 use crate::shade::{Visibility, direct, split as split_light};
 use crate::trace::check::{Random, packet, poisoned, splat};
 use crate::trace::{BLOCKED, NONE, Rays8, nearest, occlusion, surface};
 use glam::Vec3;
+
+const PATTERNS: [Pattern; 4] = [Pattern::Noise, Pattern::Cells, Pattern::Brick, Pattern::Scratches];
 
 /// Some shapes of each kind about the origin, part of them of glass.
 fn mixed(random: &mut Random) -> Scene {
@@ -26,7 +28,7 @@ fn mixed(random: &mut Random) -> Scene {
             transparency: if i & 1 == 0 { 0.0 } else { 0.9 },
             ior: 1.5,
             shadow: Vec3::new(0.9, 0.5, 0.1),
-            texture: Texture { grain: 0.2, bump: 0.02, ..Texture::NONE },
+            texture: Texture { pattern: PATTERNS[i], grain: 0.2, bump: 0.02, ..Texture::NONE },
             ..Material::default()
         })
         .collect();
