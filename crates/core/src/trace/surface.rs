@@ -48,7 +48,7 @@ pub struct Surface {
 
 impl Surface {
     /// Unit geometric normal that points out of the body.
-    #[cfg(test)]
+    #[inline(always)]
     pub fn outward(&self) -> V3 {
         V3::select(self.inside, -self.facing, self.facing)
     }
