@@ -174,9 +174,10 @@ fn drawn_mirrors_give_no_more_light_than_comes_in() {
         let metal = Material { diffuse: 0.0, f0, roughness, reflection: 1.0, ..Material::default() };
         let scene = Scene { shading: Shading::Ggx, ..furnace(metal) };
         let quality = Quality { rough: 16, ..preset("high").every_pixel() };
-        let (middle, all) = light(&scene, &quality);
+        let (_, all) = light(&scene, &quality);
         assert!(all.iter().all(|c| c.max_element() <= 1.0001), "roughness {roughness}");
-        // Facing the eye, next to nothing is lost but by shadowing among facets.
+        // Facing the eye little is lost, by shadowing among facets: 1 - ln 2 is left at roughness 1.
+        let middle = (0..64).map(|i| all[(28 + i / 8) * 64 + 28 + i % 8]).sum::<Vec3>() / 64.0;
         let kept = 1.0 - 0.7 * roughness * roughness;
         assert!((middle - f0).max_element() < 0.03 && middle.x > kept, "{middle} at {roughness}");
     }

@@ -37,7 +37,12 @@ fn compile(part: &str, method: &str, image: &PathBuf) {
         .arg(directory.join(format!("launcher/{part}.rs")))
         .args(["--edition=2024", "--crate-name=launcher", "--crate-type=bin"])
         .args(["--cfg", &format!("luc_method=\"{method}\"")])
-        .args(["-Copt-level=s", "-Cpanic=abort", "-Ccodegen-units=1", "-Clto=fat"])
+        .args([
+            if part == "main" { "-Copt-level=s" } else { "-Copt-level=z" },
+            "-Cpanic=abort",
+            "-Ccodegen-units=1",
+            "-Clto=fat",
+        ])
         .args(["-Crelocation-model=static", "-Cforce-unwind-tables=no", "-Cno-redzone=yes"])
         // The system linker: the script is written for it.
         .args(["-Clinker=cc", "-Clinker-features=-lld"])

@@ -103,56 +103,58 @@ pub fn rough(stage: &Stage, s: &Surface, level: u32) -> F {
         & s.value(Channel::Transparency).simd_le(F::ZERO)
 }
 
-/// Where the rays of a bounce from `s` in lanes `which` go, whose light counts by `weight`.
-#[inline(never)]
-pub fn bounce(
-    stage: &Stage,
-    s: &Surface,
-    origin: V3,
-    (weight, which): (V3, F),
-    (packet, level): (&Packet, u32),
-    ways: &mut Vec<Way>,
-) {
-    let count = if level == 0 { stage.quality.scatter } else { 1 };
-    let share = splat(1.0 / count as f32);
-    for i in 0..count {
-        let direction = cosine(s.normal, point(packet.seed, stage.pattern * count + i));
-        // Together they see all around.
-        let spread = (share * splat(12.0)).sqrt();
-        let seed = offspring(packet.seed, i) + splat_u(1);
-        let rays =
-            Packet { rays: Rays8 { origin, direction }, weight: weight * share, spread, seed, ..*packet };
-        ways.push(Way { rays, which: above(s, direction, which), counter: Counter::ScatterRays });
-    }
+/// Why rays are drawn.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Draw {
+    /// A bounce of diffuse light.
+    Bounce,
+    /// The mirror of a rough surface.
+    Mirror,
 }
 
-/// Where the mirrored rays of the rough surfaces `s` in lanes `which` go, whose light counts by
-/// `weight`.
+/// Where the rays drawn at `s` in lanes `which` go, whose light counts by `weight`; `level` is the
+/// length of the chain so far.
 #[inline(never)]
-pub fn mirror(
+pub fn draw(
     stage: &Stage,
     s: &Surface,
-    origin: V3,
+    (kind, level): (Draw, u32),
     (weight, which): (V3, F),
     packet: &Packet,
     ways: &mut Vec<Way>,
 ) {
-    let count = stage.quality.rough;
+    let bounce = kind == Draw::Bounce;
+    let count = match kind {
+        Draw::Mirror => stage.quality.rough,
+        Draw::Bounce if level == 0 => stage.quality.scatter,
+        Draw::Bounce => 1,
+    };
     let share = splat(1.0 / count as f32);
+    let origin = s.point + s.facing * s.clearance;
     let m = s.value(Channel::Roughness);
+    // Together they see all around, or all of the lobe.
+    let lobe = if bounce { splat(12.0_f32.sqrt()) } else { m * m * splat(6.0) };
+    let spread = packet.spread + lobe * share.sqrt();
+    // Sequences and offspring of their own for each kind, and the marks that tell them.
+    let (turn, mark) = if bounce { (0, 1) } else { (128, DRAWN) };
     for i in 0..count {
-        // Another sequence than that of the bounce.
-        let at = point(packet.seed ^ splat_u(!0), stage.pattern * count + i);
-        let (direction, factor) = shade::sample(s, -packet.rays.direction, at);
-        let spread = packet.spread + m * m * splat(6.0) * share.sqrt();
-        let seed = offspring(packet.seed, 128 + i) | splat_u(DRAWN);
-        let weight = weight * factor * share;
-        let rays = Packet { rays: Rays8 { origin, direction }, weight, spread, seed, ..*packet };
-        ways.push(Way { rays, which: above(s, direction, which), counter: Counter::RoughRays });
+        let at = point(packet.seed + splat_u(turn), stage.pattern * count + i);
+        let (direction, factor) = if bounce {
+            (cosine(s.normal, at), V3::splat(glam::Vec3::ONE))
+        } else {
+            shade::sample(s, -packet.rays.direction, at)
+        };
+        // About bent normals some lie under the surface.
+        let above = which & direction.dot(s.facing).simd_gt(F::ZERO);
+        let seed = offspring(packet.seed, turn + i) + splat_u(mark);
+        let rays = Packet {
+            rays: Rays8 { origin, direction },
+            weight: weight * factor * share,
+            spread,
+            seed,
+            ..*packet
+        };
+        let counter = if bounce { Counter::ScatterRays } else { Counter::RoughRays };
+        ways.push(Way { rays, which: above.to_bitmask(), counter });
     }
-}
-
-/// The lanes of `which` whose directions leave the surface: about bent normals some lie under it.
-fn above(s: &Surface, direction: V3, which: F) -> u32 {
-    (which & direction.dot(s.facing).simd_gt(F::ZERO)).to_bitmask()
 }

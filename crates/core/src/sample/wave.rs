@@ -6,7 +6,7 @@
 
 use super::block::{Block, Samples};
 use super::rays::{Packet, RayList};
-use super::scatter::{self, Way};
+use super::scatter::{self, Draw, Way};
 use crate::counters::{Counter, Counters};
 use crate::cull::{Bounds, Region, occluders};
 use crate::features;
@@ -299,12 +299,12 @@ fn shade_packet(
     let outside = s.point + offset;
     if bounces.any() {
         let weight = seen * local.kept * block.albedo;
-        scatter::bounce(stage, &s, outside, (weight, bounces), (packet, level), ways);
+        scatter::draw(stage, &s, (Draw::Bounce, level), (weight, bounces), packet, ways);
     }
     let rough = scatter::rough(stage, &s, level) & solid;
     if rough.any() {
         let weight = seen * s.value(Channel::Reflection);
-        scatter::mirror(stage, &s, outside, (weight, rough), packet, ways);
+        scatter::draw(stage, &s, (Draw::Mirror, level), (weight, rough), packet, ways);
         reflected = reflected & !rough;
     }
     let cut = if level == stage.quality.depth { solid } else { scattered & solid };

@@ -37,7 +37,7 @@ const MIXERS: usize = 4;
 /// Sets of weights of each mixer.
 const SETS: usize = 2048;
 /// Rows of sixteen slots for each context, as a power of two.
-const ROW_BITS: u32 = 15;
+const ROW_BITS: u32 = 16;
 /// Entries of the match model's table, as a power of two.
 const MATCH_BITS: u32 = 16;
 
@@ -106,6 +106,8 @@ pub struct Model {
     trust: [[f32; MIXERS]; 64],
     /// How often a match of a length held: probability.
     match_holds: [u16; 32],
+    /// How far a slot's probability moves, by the number of bits seen.
+    shares: [u16; 256],
     /// Meaning of histories, by context: probability of a one.
     meaning: [[u16; 256]; CONTEXTS],
     by_partial: [Correction; 256],
@@ -141,6 +143,9 @@ impl Model {
             }
         }
         self.match_holds = [0xe000; 32];
+        for (seen, share) in self.shares.iter_mut().enumerate() {
+            *share = (65536 / (seen * 2 + 3)) as u16;
+        }
         self.trust = [[1.0 / MIXERS as f32; MIXERS]; 64];
         for sets in &mut self.weights {
             for set in sets {
@@ -166,15 +171,18 @@ impl Model {
         let bits = 31 - partial.leading_zeros();
         // The bits of this half of the byte, behind a leading one.
         let half = if bits < 4 { partial } else { partial & 15 >> (8 - bits) | 1 << (bits & 3) };
+        if bits & 3 == 0 {
+            for (found, rows) in self.found.iter_mut().zip(&self.slots) {
+                let hash = mix(found.hash, partial);
+                found.row = hash >> (32 - ROW_BITS);
+                found.check = hash as u8 | 1;
+                fetch(&rows[found.row as usize & ((1 << ROW_BITS) - 1)]);
+            }
+        }
         let stretch = &self.stretch;
         let opinions = self.opinions.numbers_mut().as_flattened_mut();
         let contexts = self.found.iter_mut().zip(&mut self.slots).zip(&self.meaning);
         for (((found, rows), meaning), opinion) in contexts.zip(opinions.as_chunks_mut::<3>().0) {
-            if bits & 3 == 0 {
-                let hash = mix(found.hash, partial);
-                found.row = hash >> (32 - ROW_BITS);
-                found.check = hash as u8 | 1;
-            }
             found.place = (found.check >> 4 ^ half as u8) & 15;
             let slot = &mut rows[found.row as usize & ((1 << ROW_BITS) - 1)][usize::from(found.place) & 15];
             if slot.check != found.check {
@@ -244,7 +252,7 @@ impl Model {
             if slot.seen > 0 {
                 toward(&mut meaning[usize::from(slot.history)], bit, 410);
             }
-            toward(&mut slot.probability, bit, 65536 / (i32::from(slot.seen) * 2 + 3));
+            toward(&mut slot.probability, bit, i32::from(self.shares[usize::from(slot.seen)]));
             slot.seen += u8::from(slot.seen < SETTLED);
             slot.history = next_history(slot.history, bit);
         }
@@ -356,6 +364,19 @@ impl Model {
 
 /// The field of a ModRM byte that names a register.
 const REGISTER: u32 = 0x38;
+
+/// Tells the processor that a row will be read soon, so that it needn't wait for one after the other.
+fn fetch(row: &[Slot; 16]) {
+    #[cfg(target_arch = "x86_64")]
+    // SAFETY: reads nothing; all x86-64 processors have the instruction.
+    unsafe {
+        use core::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+        _mm_prefetch::<_MM_HINT_T0>((&raw const row[0]).cast());
+        _mm_prefetch::<_MM_HINT_T0>((&raw const row[15]).cast());
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = row;
+}
 
 /// Moves a probability of 16 bits toward the bit, by `share` / 32768 of the way.
 fn toward(probability: &mut u16, bit: u32, share: i32) {
