@@ -257,3 +257,17 @@ fn each_pattern_is_within_40_db_and_counted_only_where_it_is() {
         pictures.push(full);
     }
 }
+
+#[test]
+fn drawn_rays_are_the_same_on_any_number_of_threads() {
+    let scene = Scene { bounces: 2, ..shore() };
+    let quality = Quality { average: 2, ..preset("ultra") };
+    let on = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+        pool.install(|| render(&scene, SIZE, &quality).0)
+    };
+    let one = on(1);
+    for threads in [2, 5] {
+        assert!(one == on(threads), "{threads} threads");
+    }
+}

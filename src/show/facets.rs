@@ -3,7 +3,8 @@
 //! All of it follows from six small rules for one side of one bay and the rose; instances mirror,
 //! place and grow them. The camera waits at the portal, flies down the nave and looks up.
 
-use super::paint::{bumps, degrees, key, polished, seconds, surface, v};
+use super::paint::{bumps, degrees, key, polished, seconds, surface, times, v};
+use super::still::{Lamp, Still};
 use glam::{Mat3, Vec3};
 use luc_core::math::hash::{hash2, unit};
 use luc_core::math::scalar::sin_cos;
@@ -28,7 +29,7 @@ const ROSE: Vec3 = v(0.0, SPRING, -35.5);
 const Z: [Key; 3] = [key(0.0, 12.0, Ease::Smooth), key(9.0, 8.5, Ease::Smooth), key(23.5, -20.0, Ease::Step)];
 const Y: [Key; 2] = [key(9.0, 1.15, Ease::Smooth), key(23.0, 3.0, Ease::Step)];
 const TILT: [Key; 3] =
-    [key(9.0, 0.19, Ease::Smooth), key(18.0, 0.24, Ease::Smooth), key(24.0, 0.8, Ease::Step)];
+    [key(9.0, 0.19, Ease::Smooth), key(18.0, 0.24, Ease::Smooth), key(24.0, 0.47, Ease::Step)];
 const ROLL: [Key; 2] = [key(12.0, 2.5, Ease::Smooth), key(24.0, -3.0, Ease::Step)];
 
 type Triangles = Vec<[Vec3; 3]>;
@@ -148,6 +149,9 @@ const RULES: [Rule; 6] = [
     (rose, 0, 0.0, 0.0),
 ];
 
+/// Place of [`foot`] among them.
+const FOOT: usize = 1;
+
 /// The meshes, made once.
 fn meshes() -> &'static [Arc<Mesh>] {
     static MESHES: OnceLock<Vec<Arc<Mesh>>> = OnceLock::new();
@@ -176,12 +180,16 @@ fn cathedral(t: f32) -> Assembly {
         let bay = k / 2;
         let side = if k % 2 == 0 { 1.0 } else { -1.0 };
         let way = if (bay * 3 + k) % 4 < 2 { 1.0 } else { -1.0 };
-        let began = bay as f32 * 1.0 - 1.5;
-        for (mesh, (_, material, delay, from)) in meshes.iter().zip(RULES).take(5) {
+        let began = bay as f32 - 1.5;
+        // No two clusters of crystals stand the same way.
+        let (sin, cos) = sin_cos(k as f32 * 1.7);
+        let turned = Mat3::from_cols(v(cos, 0.0, sin), Vec3::Y, v(-sin, 0.0, cos));
+        for (i, (mesh, (_, material, delay, from))) in meshes.iter().zip(RULES).take(5).enumerate() {
             let size = growth(t - began - delay);
             if size > 0.02 {
                 let origin = v(side * SIDE, from * (1.0 - size), 4.0 - BAY * bay as f32);
-                let grown = Mat3::from_diagonal(v(side, 1.0, way) * size);
+                let mirrored = Mat3::from_diagonal(v(side, 1.0, way) * size);
+                let grown = if i == FOOT { mirrored * turned } else { mirrored };
                 instances.push(Instance::new(mesh, grown, origin, material));
             }
         }
@@ -189,63 +197,85 @@ fn cathedral(t: f32) -> Assembly {
     Assembly::new(instances)
 }
 
+/// Light that comes through the torn vault, from when its bay has grown.
+fn shaft_of_light(k: usize, t: f32) -> Beam {
+    let from = v(4.0, 8.2 + 0.25 * k as f32, -5.0 - BAY * k as f32);
+    let to = from + v(-0.42, -0.34, 0.84) * (from.y / 0.34);
+    let shine = 0.08 * ((t - 4.0 - k as f32) * 0.5).clamp(0.0, 1.0);
+    Beam { from, to, width: 0.42, colour: v(1.0, 0.58, 0.22) * shine, fade: 0.05 }
+}
+
+/// A stop of the sky.
+const fn sky(y: f32, r: f32, g: f32, b: f32) -> Stop {
+    Stop { y, colour: v(0.8 * r, 0.8 * g, 0.8 * b) }
+}
+
+/// A light around the sun, which stands behind the rose.
+const fn glow(colour: Vec3, sharpness: f32) -> Glow {
+    Glow { direction: ROSE, colour, sharpness }
+}
+
+static STILL: Still = Still {
+    stops: &[
+        sky(-1.0, 0.02, 0.03, 0.05),
+        sky(-0.02, 0.1, 0.16, 0.28),
+        sky(0.06, 0.13, 0.21, 0.4),
+        sky(0.3, 0.05, 0.1, 0.24),
+        sky(0.7, 0.02, 0.045, 0.12),
+        sky(1.0, 0.02, 0.05, 0.14),
+    ],
+    glows: &[glow(v(20.0, 11.5, 4.2), 420.0), glow(v(1.7, 0.72, 0.19), 30.0)],
+    planes: &[Plane { point: Vec3::ZERO, normal: Vec3::Y, reach: 90.0, material: 2 }],
+    materials: &[
+        surface(v(0.2, 0.28, 0.42), 0.3, 0.5),
+        surface(v(0.1, 0.135, 0.2), 0.55, 0.1),
+        Material { texture: bumps(0.9, 0.35, 0.04), ..polished(v(0.05, 0.065, 0.09), 0.14, 1.6) },
+    ],
+    lights: &[
+        // The sun, from where it really shines.
+        Lamp { position: v(240.0, 200.0, -1000.0), colour: times(v(1.0, 0.72, 0.38), 3.14e6), spot: None },
+        // Goes with the camera.
+        Lamp { position: v(-4.0, 6.0, 5.0), colour: times(v(0.3, 0.5, 1.0), 40.0), spot: None },
+    ],
+    shading: Shading::Ggx,
+    ambient: [v(0.03, 0.045, 0.08), v(0.13, 0.22, 0.44)],
+    fog: Some(Fog {
+        density: 0.021,
+        colour: v(0.06, 0.115, 0.26),
+        lo: v(-40.0, -0.1, -60.0),
+        hi: v(40.0, 30.0, 5.0),
+    }),
+    grade: Grade {
+        exposure: 1.12,
+        bloom: 0.38,
+        lift: v(0.0, 0.01, 0.03),
+        gamma: v(0.92, 0.92, 1.0),
+        gain: v(1.0, 0.94, 0.82),
+        vignette: 0.18,
+        grain: 0.007,
+        ..Grade::DEFAULT
+    },
+    ..Still::NOTHING
+};
+
 /// The scene at a local frame.
 pub fn scene(frame: u64) -> Scene {
     let t = seconds(frame);
     let z = track(&Z, t);
     let position = v(-1.5 * (z / 12.0).max(-0.6), track(&Y, t), z);
-    let target = position + v(0.1, track(&TILT, t), -1.0);
-    let sun = v(0.24, 0.2, -1.0) * 1e3;
-    let sky = |y, r, g, b| Stop { y, colour: v(r, g, b) * 0.8 };
-    let direction = (ROSE - position).normalize();
-    let glow = |r, g, b, sharpness| Glow { direction, colour: v(r, g, b), sharpness };
-    Scene {
-        camera: Camera { position, target, roll: degrees(track(&ROLL, t)), fov: degrees(54.0) },
-        background: Background {
-            stops: vec![
-                sky(-1.0, 0.02, 0.03, 0.05),
-                sky(-0.02, 0.1, 0.16, 0.28),
-                sky(0.06, 0.13, 0.21, 0.4),
-                sky(0.3, 0.05, 0.1, 0.24),
-                sky(0.7, 0.02, 0.045, 0.12),
-                sky(1.0, 0.02, 0.05, 0.14),
-            ],
-            glows: vec![glow(20.0, 11.5, 4.2, 420.0), glow(1.7, 0.72, 0.19, 30.0)],
-            discs: vec![],
-        },
-        planes: vec![Plane { point: Vec3::ZERO, normal: Vec3::Y, reach: 90.0, material: 2 }],
-        meshes: cathedral(t),
-        materials: vec![
-            surface(v(0.2, 0.28, 0.42), 0.3, 0.5),
-            surface(v(0.1, 0.135, 0.2), 0.55, 0.1),
-            Material { texture: bumps(0.9, 0.35, 0.04), ..polished(v(0.05, 0.065, 0.09), 0.14, 1.6) },
-        ],
-        lights: vec![
-            Light { position: sun, colour: v(1.0, 0.72, 0.38) * (2.86 * 1.0976e6), kind: LightKind::Point },
-            Light {
-                position: position + v(-4.0, 6.0, 5.0),
-                colour: v(0.3, 0.5, 1.0) * 40.0,
-                kind: LightKind::Point,
-            },
-        ],
-        shading: Shading::Ggx,
-        ambient: [v(0.06, 0.08, 0.12), v(0.16, 0.26, 0.5)],
-        fog: Some(Fog {
-            density: 0.021,
-            colour: v(0.06, 0.115, 0.26),
-            lo: v(-40.0, -0.1, -60.0),
-            hi: v(40.0, 30.0, 5.0),
-        }),
-        grade: Grade {
-            exposure: 1.12,
-            bloom: 0.38,
-            lift: v(0.0, 0.01, 0.03),
-            gamma: v(0.92, 0.92, 1.0),
-            gain: v(1.0, 0.94, 0.82),
-            vignette: 0.18,
-            grain: 0.007,
-            ..Grade::default()
-        },
-        ..Scene::default()
+    let tilt = track(&TILT, t);
+    let target = position + v(0.1, tilt, -1.0);
+    let mut s = STILL.scene();
+    s.camera = Camera { position, target, roll: degrees(track(&ROLL, t)), fov: degrees(54.0) };
+    for glow in &mut s.background.glows {
+        glow.direction = (ROSE - position).normalize();
     }
+    s.lights[1].position += position;
+    s.meshes = cathedral(t);
+    if tilt > 0.27 {
+        // The floor has left the picture.
+        s.planes.clear();
+    }
+    s.beams = (0..5).map(|k| shaft_of_light(k, t)).collect();
+    s
 }

@@ -3,7 +3,6 @@
 //! Time is counted in frames, 60 a second, and beats, 120 a minute: integers. A part's scene is a
 //! pure function of its local frame, so any frame can be rendered on its own and nothing drifts.
 
-#[allow(dead_code, reason = "a part that is being made")]
 mod facets;
 mod gold;
 mod luc;
@@ -36,6 +35,7 @@ pub const PARTS: &[Part] = &[
     Part { name: "luc", frames: 6 * BAR, scene: luc::scene },
     Part { name: "mirror", frames: 16 * BAR, scene: mirror::scene },
     Part { name: "gold", frames: 16 * BAR, scene: gold::scene },
+    Part { name: "facets", frames: 12 * BAR, scene: facets::scene },
 ];
 
 /// Length of the whole show in frames; frame n is frame n mod this.

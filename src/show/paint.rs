@@ -55,9 +55,9 @@ pub const fn polished(colour: Vec3, roughness: f32, ior: f32) -> Material {
 
 /// A surface of microfacets for GGX: mirrors in its colour by the metallic part, as a body of
 /// index 1.45 by the rest. Nothing is traced for its mirror; set `reflection` to trace it.
-#[allow(dead_code, reason = "for parts that are being made")]
-pub fn surface(colour: Vec3, roughness: f32, metallic: f32) -> Material {
-    let f0 = Vec3::splat(0.034).lerp(colour, metallic);
+pub const fn surface(colour: Vec3, roughness: f32, metallic: f32) -> Material {
+    let rest = 0.034 * (1.0 - metallic);
+    let f0 = v(rest + colour.x * metallic, rest + colour.y * metallic, rest + colour.z * metallic);
     Material { colour, diffuse: 1.0 - metallic, specular: Vec3::ONE, f0, roughness, ..Material::DEFAULT }
 }
 
@@ -67,7 +67,6 @@ pub const fn grain(scale: f32, amount: f32) -> Texture {
 }
 
 /// Relief `depth` high, of which `strength` shows, with `scale` cells per world unit.
-#[allow(dead_code, reason = "for parts that are being made")]
 pub const fn bumps(scale: f32, strength: f32, depth: f32) -> Texture {
     Texture { scale, bump: strength * depth, ..Texture::NONE }
 }

@@ -10,7 +10,7 @@ use std::path::PathBuf;
 pub const SIZE: (u32, u32) = (320, 180);
 
 /// Part and local frame of the kept pictures.
-pub const FRAMES: [(&str, u64); 15] = [
+pub const FRAMES: [(&str, u64); 19] = [
     ("luc", 36),      // the beam comes out of the dark
     ("luc", 285),     // the second letter catches fire
     ("luc", 719),     // last frame: all lit
@@ -26,10 +26,14 @@ pub const FRAMES: [(&str, u64); 15] = [
     ("gold", 855),    // the camera at its lowest
     ("gold", 1695),   // the overlay half way across
     ("gold", 1919),   // last frame: all under the overlay
+    ("facets", 0),    // first frame: the rose and the first crystals
+    ("facets", 300),  // bays grow
+    ("facets", 640),  // all has grown, in shafts of light
+    ("facets", 1439), // last frame: the vault
 ];
 
 /// Frames whose fingerprints are kept: part, local frame, preset, size.
-pub const FINGERPRINTS: [(&str, u64, &str, (u32, u32)); 15] = [
+pub const FINGERPRINTS: [(&str, u64, &str, (u32, u32)); 19] = [
     ("luc", 100, "draft", (333, 187)),
     ("luc", 400, "medium", (320, 180)),
     ("luc", 600, "ultra", (320, 180)),
@@ -45,6 +49,10 @@ pub const FINGERPRINTS: [(&str, u64, &str, (u32, u32)); 15] = [
     ("gold", 1234, "high", (640, 360)),
     ("gold", 1699, "ultra", (333, 187)),
     ("gold", 1800, "reference", (96, 54)),
+    ("facets", 150, "draft", (333, 187)),
+    ("facets", 480, "medium", (320, 180)),
+    ("facets", 900, "ultra", (320, 180)),
+    ("facets", 1200, "reference", (96, 54)),
 ];
 
 /// Where the pictures and `fingerprints.txt` are kept.

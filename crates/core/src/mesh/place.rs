@@ -124,20 +124,16 @@ impl Instance {
             normal = V3::select(n.dot(outward).simd_gt(F::ZERO), n, outward);
         }
         let w = &self.world_from_mesh;
-        let size = times(&Mat3::from_cols(w.x_axis.abs(), w.y_axis.abs(), w.z_axis.abs()), abs(p));
-        let size = size + V3::splat(self.origin.abs());
+        let stretch = (w.x_axis.abs() + w.y_axis.abs() + w.z_axis.abs()).max_element();
+        let size = p.x.abs().fast_max(p.y.abs()).fast_max(p.z.abs());
         Facets {
             point: times(w, p) + V3::splat(self.origin),
             outward,
             normal,
-            reach: size.x.fast_max(size.y).fast_max(size.z) * splat(4.0),
+            reach: size * splat(4.0 * stretch) + splat(4.0 * self.origin.abs().max_element()),
             uv: [weights[1], weights[2]],
         }
     }
-}
-
-fn abs(v: V3) -> V3 {
-    V3::new(v.x.abs(), v.y.abs(), v.z.abs())
 }
 
 impl Assembly {

@@ -3,10 +3,11 @@
 use super::*;
 use crate::counters::Counters;
 use crate::math::lanes::{F, LANES, TRUE, V3, from_bits, splat};
+use crate::math::scalar::sin_cos;
 use crate::quality::Quality;
 use crate::scene::{Material, Scene, Sphere, Triangle};
 use crate::trace::check::{Random, packet, poisoned};
-use crate::trace::{Aim, BLOCKED, Hits, Rays8, nearest, occlusion};
+use crate::trace::{Aim, BLOCKED, Hits, Rays8, nearest, occlusion, surface};
 use glam::Mat3;
 use std::sync::Arc;
 
@@ -263,6 +264,82 @@ fn what_lies_in_a_pyramid_is_found() {
         }
     }
     assert!(cases > 800 && empty > 200, "{cases} with facets, {empty} found empty");
+}
+
+/// A ball of triangles of radius 1, with its true normals at the corners if it is to look round.
+fn ball(smooth: bool) -> Arc<Mesh> {
+    let ring = |i: usize| {
+        let (sin, cos) = sin_cos(i as f32 / 12.0 * std::f32::consts::PI);
+        (Vec3::Y * -cos, if i.is_multiple_of(12) { 0.0 } else { sin })
+    };
+    let mut triangles = Vec::new();
+    lathe(&mut triangles, &std::array::from_fn::<_, 13, _>(ring), 24, 0.0);
+    let normals = if smooth { triangles.clone() } else { Vec::new() };
+    Arc::new(Mesh::smooth(triangles, normals))
+}
+
+#[test]
+fn facets_know_their_points_normals_and_corners() {
+    let mut random = Random::new(315);
+    let mut hits = 0;
+    for case in 0..200 {
+        let (mesh, m, origin) = (ball(case % 2 == 1), affine(&mut random), random.vector(-2, 4));
+        let instance = Instance::new(&mesh, m, origin, 0);
+        let scene = Scene {
+            meshes: Assembly::new(vec![instance.clone()]),
+            materials: vec![Material::default()],
+            ..Scene::default()
+        };
+        let rays = packet(|| {
+            let d = random.direction();
+            (origin + random.vector(-4, 0) - d * random.size(2, 6), d)
+        });
+        let hits_here = nearest(&scene, HIGH, &rays, u64::MAX, &mut Counters::default());
+        let solid = hits_here.id.simd_ge(F::ZERO);
+        let (t, id) = (hits_here.t & solid, hits_here.id);
+        let s = surface(&scene, HIGH, &rays, t, id, F::ZERO);
+        for lane in (0..LANES).filter(|&lane| solid.to_bitmask() >> lane & 1 == 1) {
+            hits += 1;
+            let at = |v: F| v.to_array()[lane];
+            let [a, b, c] = mesh.triangles()[at(id) as usize >> 2];
+            let (u, v) = (at(s.uv[0]), at(s.uv[1]));
+            let p = a * (1.0 - u - v) + b * u + c * v;
+            let point = s.point.lane(lane);
+            let o = rays.origin.lane(lane);
+            let reach = o.abs().max_element() + origin.abs().max_element() + 8.0;
+            let replay = || format!("case {case} {instance:?} ray {o:?} {:?}", rays.direction.lane(lane));
+            assert!((instance.to_world(p) - point).length() < 1e-5 * reach, "weights: {}", replay());
+            let on_ray = o + rays.direction.lane(lane) * at(t);
+            assert!((on_ray - point).length() < 1e-4 * reach, "off the ray: {}", replay());
+            // Outwards, across the facet; from outside all of a ball is seen from its front.
+            let n = s.outward.lane(lane);
+            let [a, b, c] = [a, b, c].map(|p| instance.to_world(p));
+            let longest = (b - a).length().max((c - a).length());
+            let across = n.dot(b - a).abs().max(n.dot(c - a).abs());
+            assert!(across < 1e-3 * longest && (n.length() - 1.0).abs() < 1e-5, "normal: {}", replay());
+            assert!(n.dot(point - origin) > 0.0, "inwards: {}", replay());
+            if mesh.is_smooth() {
+                // A unit ball's normals, by the inverse transposed.
+                let want = (m.inverse().transpose() * p).normalize();
+                assert!(s.normal.lane(lane).dot(want) > 0.9999, "not round: {}", replay());
+                assert_eq!(at(id).to_bits() ^ at(s.part).to_bits(), 0, "a facet shows: {}", replay());
+            } else {
+                assert_eq!((s.normal.lane(lane), at(s.part)), (n, 0.0), "not flat: {}", replay());
+            }
+        }
+    }
+    assert!(hits > 1_000, "{hits}");
+}
+
+#[test]
+fn a_mesh_of_glass_is_a_named_warning() {
+    let instance = Instance::new(&ball(false), Mat3::IDENTITY, Vec3::ZERO, 0);
+    let scene = Scene {
+        meshes: Assembly::new(vec![instance]),
+        materials: vec![Material { transparency: 1.0, ..Material::default() }],
+        ..Scene::default()
+    };
+    assert_eq!(crate::plan::warnings(&scene, HIGH), ["meshes of glass cast no shadow"]);
 }
 
 #[test]

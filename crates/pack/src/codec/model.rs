@@ -37,7 +37,7 @@ const MIXERS: usize = 4;
 /// Sets of weights of each mixer.
 const SETS: usize = 2048;
 /// Rows of sixteen slots for each context, as a power of two.
-const ROW_BITS: u32 = 16;
+const ROW_BITS: u32 = 15;
 /// Entries of the match model's table, as a power of two.
 const MATCH_BITS: u32 = 16;
 
