@@ -16,8 +16,9 @@ use std::path::{Path, PathBuf};
 /// The target that the size build is for.
 pub const TARGET: &str = "x86_64-unknown-linux-gnu";
 
-/// What is replaced lies in the workspace without being part of it: what cargo calls a crate inside, and with
-/// that the order of functions in the file, doesn't hang on the folder that the project lies in.
+/// What is replaced lies in the workspace without being part of it. (The order of functions in the file, and with it
+/// some ten bytes, still hangs on the folder that the project lies in: cargo's names for the standard library's
+/// crates have its path in them.)
 const OWN_WORKSPACE: &str = "[workspace]\nexclude = [\"deps\", \"std\"]";
 
 /// A dependency as cargo has downloaded it.
