@@ -205,9 +205,9 @@ fn lit_points_are_not_in_the_shadow_of_their_own_ball() {
         let (t, id) = hits(&scene, &rays);
         let solid = id.simd_ge(F::ZERO);
         let s = surface(&scene, &Quality::PRESETS[3].1, &rays, solid.select(t, F::ZERO), id, F::ZERO);
-        let start = s.point + s.outward * s.clearance;
+        let start = s.point + s.outward() * s.clearance;
         let to_lamp = V3::splat(lamp) - start;
-        let lit = solid & !s.inside & s.outward.dot(to_lamp.normalize()).simd_gt(F::splat(1e-6));
+        let lit = solid & !s.inside & s.outward().dot(to_lamp.normalize()).simd_gt(F::splat(1e-6));
         let (t, id) = hits(&scene, &Rays8 { origin: start, direction: to_lamp });
         let wrong = lit & id.simd_ge(F::ZERO) & t.simd_lt(F::ONE);
         assert!(!wrong.any(), "{scene:?} lamp {lamp:?} {:?} {:?}", rays.origin, rays.direction);

@@ -312,7 +312,7 @@ fn facets_know_their_points_normals_and_corners() {
             let on_ray = o + rays.direction.lane(lane) * at(t);
             assert!((on_ray - point).length() < 1e-4 * reach, "off the ray: {}", replay());
             // Outwards, across the facet; from outside all of a ball is seen from its front.
-            let n = s.outward.lane(lane);
+            let n = s.outward().lane(lane);
             let [a, b, c] = [a, b, c].map(|p| instance.to_world(p));
             let longest = (b - a).length().max((c - a).length());
             let across = n.dot(b - a).abs().max(n.dot(c - a).abs());

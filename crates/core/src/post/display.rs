@@ -16,12 +16,10 @@ const FINE: u32 = 7;
 const OCTAVES: u32 = 16;
 /// Bits of the first entry: 2^-12.
 const FIRST: u32 = (127 - 12) << 23;
-const ENTRIES: usize = (OCTAVES << FINE) as usize;
+const ENTRIES: usize = (OCTAVES << FINE) as usize + 1;
 
-/// A table of display values for each channel.
-pub struct Display {
-    curves: [Vec<f32>; 3],
-}
+/// A table of display values for each channel, one after another.
+pub struct Display(Vec<f32>);
 
 fn tone(x: f32) -> f32 {
     (x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14)).clamp(0.0, 1.0)
@@ -30,16 +28,14 @@ fn tone(x: f32) -> f32 {
 impl Display {
     /// The curves of a grade.
     pub fn new(grade: &Grade) -> Self {
-        let curve = |channel: usize| {
+        let entry = |at: usize| {
+            let (channel, i) = (at / ENTRIES, at % ENTRIES);
             let (lift, gain, gamma) = (grade.lift[channel], grade.gain[channel], grade.gamma[channel]);
-            let entry = |i: usize| {
-                let x = f32::from_bits(FIRST + ((i as u32) << (23 - FINE)));
-                let v = srgb_encode(tone(x * grade.exposure));
-                pow((lift + v * (gain - lift)).clamp(0.0, 1.0), 1.0 / gamma)
-            };
-            (0..=ENTRIES).map(entry).collect()
+            let x = f32::from_bits(FIRST + ((i as u32) << (23 - FINE)));
+            let v = srgb_encode(tone(x * grade.exposure));
+            pow((lift + v * (gain - lift)).clamp(0.0, 1.0), 1.0 / gamma)
         };
-        Self { curves: std::array::from_fn(curve) }
+        Self((0..3 * ENTRIES).map(entry).collect())
     }
 
     /// Display value of a colour, 0 to 1. NaN counts as black.
@@ -50,8 +46,8 @@ impl Display {
     /// [`Display::map`] for eight colours.
     #[inline(never)]
     pub fn map8(&self, linear: V3) -> V3 {
-        let [r, g, b] = &self.curves;
-        V3 { x: lookup(r, linear.x), y: lookup(g, linear.y), z: lookup(b, linear.z) }
+        let channel = |k: usize, x: F| lookup(&self.0[k * ENTRIES..], x);
+        V3 { x: channel(0, linear.x), y: channel(1, linear.y), z: channel(2, linear.z) }
     }
 }
 

@@ -19,7 +19,7 @@ impl Corners<'_> {
         }
         stage.scene.emitters.iter().any(|emitter| {
             let (mut lo, mut hi, mut seen, mut behind) = (Vec2::INFINITY, Vec2::NEG_INFINITY, false, false);
-            for s in self.corners.iter().chain([&self.centre]) {
+            for s in self.samples {
                 let (p, n) = (s.point(), s.normal());
                 let d = p - stage.view.origin;
                 let d = d - n * (2.0 * n.dot(d));

@@ -5,7 +5,7 @@
 //! vanishes on the cell's border.
 
 use super::block::Sample;
-use super::refine::{Cell, Corners};
+use super::refine::{Cell, Known};
 use super::scatter;
 use super::tile::{Kind, Record, TILE, Tile};
 use super::wave::soft;
@@ -27,9 +27,9 @@ struct Patch([Vec3; 5]);
 
 impl Patch {
     #[inline(never)]
-    fn of(known: &Corners, value: fn(Sample) -> Vec3) -> Patch {
-        let [a, b, c, d] = known.corners.map(value);
-        let bump = (value(known.centre) - known.mean(value)) * 16.0;
+    fn of(known: &Known, value: fn(Sample) -> Vec3) -> Patch {
+        let [a, b, c, d, centre] = known.samples.map(value);
+        let bump = (centre - known.mean(value)) * 16.0;
         Patch([a, b, c, d, bump])
     }
 
@@ -47,11 +47,11 @@ pub(super) fn fill(
     stage: &Stage,
     corner: (usize, usize),
     cell: Cell,
-    known: &Corners,
+    known: &Known,
     tile: &mut Tile,
     counters: &mut Counters,
 ) {
-    let first = known.corners[0];
+    let first = known.samples[0];
     let equal = known.agree_within(SAME);
     let kind = if equal { Kind::Filled } else { Kind::Interpolated };
     let counter = if equal { Counter::Filled } else { Counter::Interpolated };
@@ -62,12 +62,13 @@ pub(super) fn fill(
     let textured = first.material(stage).is_some_and(|m| m.texture.is_visible());
     // Where the colour itself runs smoothly the exact surface would show the same.
     let smooth = equal || known.colour_error() <= stage.quality.tolerance * 0.25;
-    let rung = match (smooth, textured) {
-        _ if first.relief_within(stage, cell.size) => Rung::Surface,
+    let most = match (smooth, textured) {
         (true, false) => Rung::Colour,
-        (true, true) => stage.rung(first.id()).min(Rung::Light),
-        (false, _) => stage.rung(first.id()),
+        (true, true) => Rung::Light,
+        (false, _) => Rung::Surface,
     };
+    let rung =
+        if first.relief_within(stage, cell.size) { Rung::Surface } else { most.min(stage.rung(first.id())) };
     if features::BEAMS && !stage.scene.beams.is_empty() {
         fill_nearness(cell, known, tile);
     }
@@ -117,8 +118,8 @@ pub(super) fn fill(
 }
 
 /// Depths between the corners: over a plane, one over the depth is linear on the screen.
-fn fill_nearness(cell: Cell, known: &Corners, tile: &mut Tile) {
-    let [a, b, c, d] = known.corners.map(|s| 1.0 / s.depth());
+fn fill_nearness(cell: Cell, known: &Known, tile: &mut Tile) {
+    let [a, b, c, d, _] = known.samples.map(|s| 1.0 / s.depth());
     for i in 0..cell.size * cell.size {
         let (column, row) = (i % cell.size, i / cell.size);
         let (x, y) = (column as f32 / cell.size as f32, row as f32 / cell.size as f32);

@@ -32,12 +32,11 @@ pub(super) struct Cell {
     pub size: usize,
 }
 
-/// The samples of a cell: corners in reading order, and the centre.
-pub(super) struct Corners<'a> {
+/// The samples of a cell: corners in reading order, then the centre.
+pub(super) struct Known<'a> {
     /// Side of the cell, px.
     pub size: usize,
-    pub corners: [Sample<'a>; 4],
-    pub centre: Sample<'a>,
+    pub samples: [Sample<'a>; 5],
 }
 
 impl Cell {
@@ -90,10 +89,10 @@ pub fn refine(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize), tile
                 let (x, y) = cell.point(i);
                 scratch.samples.get(scratch.grid[y * GRID + x] as usize)
             };
-            let known = Corners { size: cell.size, corners: std::array::from_fn(at), centre: at(4) };
+            let known = Known { size: cell.size, samples: std::array::from_fn(at) };
             if cell.size == 1 {
-                tile.set(cell.x, cell.y, known.corners[0].colour(), Record::new(Kind::Traced, 1));
-                tile.nearness[cell.y * TILE + cell.x] = 1.0 / known.corners[0].depth();
+                tile.set(cell.x, cell.y, known.samples[0].colour(), Record::new(Kind::Traced, 1));
+                tile.nearness[cell.y * TILE + cell.x] = 1.0 / known.samples[0].depth();
                 scratch.counters.add(Counter::Traced, 1);
                 if known.is_edge(stage) {
                     for (x, y) in (0..4).map(|i| cell.point(i)) {
@@ -150,16 +149,15 @@ fn shadow_casters(stage: &Stage, samples: &Samples) -> [u64; MAX_LAMPS] {
     masks
 }
 
-impl Corners<'_> {
+impl Known<'_> {
     /// Whether all samples agree with the first in a property.
     fn all(&self, like: impl Fn(Sample, Sample) -> bool) -> bool {
-        let [first, a, b, c] = self.corners;
-        [a, b, c, self.centre].iter().all(|&s| like(s, first))
+        self.samples[1..].iter().all(|&s| like(s, self.samples[0]))
     }
 
     /// Whether some sample has a property.
     fn any(&self, property: impl Fn(Sample) -> bool) -> bool {
-        !self.all(|s, _| !property(s)) || property(self.corners[0])
+        self.samples.iter().any(|&s| property(s))
     }
 
     /// Whether all samples saw the same surface from about the same side, by the same lamps.
@@ -189,14 +187,14 @@ impl Corners<'_> {
     /// Mean of a value at the corners.
     #[inline(never)]
     pub fn mean(&self, value: fn(Sample) -> Vec3) -> Vec3 {
-        let [a, b, c, d] = self.corners.map(value);
+        let [a, b, c, d, _] = self.samples.map(value);
         (a + b + c + d) * 0.25
     }
 
     /// Largest error of the bilinear display value at the centre.
     #[inline(never)]
     pub fn colour_error(&self) -> f32 {
-        (self.mean(|s| s.display()) - self.centre.display()).abs().max_element()
+        (self.mean(|s| s.display()) - self.samples[4].display()).abs().max_element()
     }
 
     /// Whether the bilinear value at the centre is within tolerance of the true one; within a
@@ -209,7 +207,7 @@ impl Corners<'_> {
             return false;
         }
         // Mirrors magnify relief: between samples farther apart than its cells nothing is known.
-        let first = self.corners[0];
+        let first = self.samples[0];
         let mirrors = first.material(stage).is_some_and(|m| m.reflection > 0.0);
         if mirrors && first.relief_within(stage, self.size) {
             return false;
@@ -217,9 +215,9 @@ impl Corners<'_> {
         let same = self.same_signature();
         let tolerance = stage.quality.tolerance * if same { 1.0 } else { 0.25 };
         let mut error = 0.0;
-        if stage.rung(self.centre.id()) == Rung::Surface {
-            let predicted = stage.display.map(self.centre.direct() + self.mean(|s| s.indirect()));
-            error = (predicted - self.centre.display()).abs().max_element();
+        if stage.rung(self.samples[4].id()) == Rung::Surface {
+            let predicted = stage.display.map(self.samples[4].direct() + self.mean(|s| s.indirect()));
+            error = (predicted - self.samples[4].display()).abs().max_element();
             if same {
                 return error <= tolerance;
             }
@@ -237,16 +235,16 @@ impl Surroundings {
         stage: &Stage,
         corner: (usize, usize),
         cell: Cell,
-        known: &Corners,
+        known: &Known,
         counters: &mut Counters,
     ) -> bool {
-        let id = known.corners[0].id();
+        let id = known.samples[0].id();
         let own = if id >= 0.0 { id as usize >> 2 } else { usize::MAX };
         let half = cell.size as f32 * 0.5;
         let middle = ((corner.0 + cell.x) as f32 + half + 0.5, (corner.1 + cell.y) as f32 + half + 0.5);
         let at = stage.on_screen(middle.0, middle.1);
         let reach = Vec2::splat(half * stage.pixel);
-        let depths = known.corners.map(|s| s.depth());
+        let [depths @ .., _] = known.samples.map(|s| s.depth());
         let deepest = depths.into_iter().fold(0.0, f32::max);
         for (i, dop) in stage.dops.iter().enumerate() {
             let field = matches!(stage.scene.shape(i), Shape::Field(_));
@@ -279,7 +277,7 @@ impl Surroundings {
         if features::FIELDS && known.may_hide_glint(stage, own) {
             return true;
         }
-        let points = known.corners.map(|s| s.point());
+        let [points @ .., _] = known.samples.map(|s| s.point());
         // Between the corners a curved surface bulges out of their hull.
         let flat = matches!(stage.scene.shape(own), Shape::Plane(_) | Shape::Triangle(_) | Shape::Facet(..));
         let across = (points[3] - points[0]).length().max((points[2] - points[1]).length());
@@ -287,8 +285,8 @@ impl Surroundings {
         let material = &stage.scene.materials[stage.scene.shape(own).material()];
         for (lamp, shafts) in stage.shafts().enumerate() {
             let position = stage.lamps[lamp].position;
-            let faces = known.corners.iter().any(|s| s.normal().dot(position - s.point()) > 0.0);
-            let lit = faces && known.corners.iter().all(|s| s.code(lamp) != BLOCKED);
+            let faces = known.samples[..4].iter().any(|s| s.normal().dot(position - s.point()) > 0.0);
+            let lit = faces && known.samples[..4].iter().all(|s| s.code(lamp) != BLOCKED);
             if (self.shadows[lamp] == 0 && meshes.is_empty()) || !lit || !stage.lamps[lamp].lights(material) {
                 continue;
             }
@@ -297,7 +295,7 @@ impl Surroundings {
                 return true;
             }
             // A body that already colours the light of all samples is known to be there.
-            let crossed = known.corners[0].code(lamp) as u32;
+            let crossed = known.samples[0].code(lamp) as u32;
             let may = occluders(stage.scene, shafts, self.shadows[lamp], Some(own), &region);
             for (i, &bit) in stage.bits.iter().enumerate() {
                 let known_tint = bit > 0.0 && crossed & bit as u32 != 0;

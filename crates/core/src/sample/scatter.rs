@@ -130,8 +130,7 @@ pub fn draw(
         Draw::Bounce => 1,
     };
     let share = splat(1.0 / count as f32);
-    let facing = V3::select(s.inside, -s.outward, s.outward);
-    let origin = s.point + facing * s.clearance;
+    let origin = s.point + s.facing * s.clearance;
     let m = s.value(Channel::Roughness);
     // Together they see all around, or all of the lobe.
     let lobe = if bounce { splat(12.0_f32.sqrt()) } else { m * m * splat(6.0) };
@@ -146,7 +145,7 @@ pub fn draw(
             shade::sample(s, -packet.rays.direction, at)
         };
         // About bent normals some lie under the surface.
-        let above = which & direction.dot(facing).simd_gt(F::ZERO);
+        let above = which & direction.dot(s.facing).simd_gt(F::ZERO);
         let seed = offspring(packet.seed, turn + i) + splat_u(mark);
         let rays = Packet {
             rays: Rays8 { origin, direction },

@@ -136,9 +136,9 @@ pub(super) fn soft(stage: &Stage, spread: F) -> F {
 fn step(stage: &Stage, scratch: &mut Scratch, candidates: u64, level: u32) {
     let Scratch { samples, counters, rays, next, hits, occluders: boxes, .. } = scratch;
     hits.clear();
-    hits.extend(
-        rays.packets.iter().map(|p| nearest(stage.scene, &stage.quality, &p.rays, candidates, counters)),
-    );
+    for packet in &rays.packets {
+        hits.push(nearest(stage.scene, &stage.quality, &packet.rays, candidates, counters));
+    }
 
     let mut shadows = [u64::MAX; MAX_LAMPS];
     if stage.quality.cull && hits.len() >= CULL_FROM {
@@ -289,8 +289,7 @@ fn shade_packet(
         counters.add(Counter::SmoothFacets, facets.to_bitmask().count_ones() as usize);
     }
 
-    let facing = V3::select(s.inside, -s.outward, s.outward);
-    let offset = facing * s.clearance;
+    let offset = s.facing * s.clearance;
     let m = s.value(Channel::Roughness);
     let spread = spread + m * m * splat(6.0);
     let one = V3::splat(Vec3::ONE);

@@ -139,8 +139,7 @@ pub fn direct(
         return sum;
     }
     let mirrors = s.value(Channel::Reflection).simd_gt(zero);
-    let facing = V3::select(s.inside, -s.outward, s.outward);
-    let start = s.point + facing * s.clearance;
+    let start = s.point + s.facing * s.clearance;
     for (k, lamp) in stage.lamps.iter().enumerate() {
         let to_lamp = V3::splat(lamp.position) - start;
         let d2 = to_lamp.dot(to_lamp).fast_max(splat(1e-8));
@@ -149,7 +148,7 @@ pub fn direct(
         let reach = lamp.lobe(-l);
         // Mirrors show shining rectangles themselves, in place of a highlight.
         let plain = if lamp.is_emitter { diffuse | (shiny & !mirrors) } else { diffuse | shiny };
-        let wanted = active & plain & n_l.simd_gt(zero) & facing.dot(l).simd_gt(zero) & reach.simd_gt(zero);
+        let wanted = active & plain & n_l.simd_gt(zero) & s.facing.dot(l).simd_gt(zero) & reach.simd_gt(zero);
         if let (Some(code), Visibility::Trace(candidates)) = (codes.get_mut(k), &visibility) {
             *code = zero;
             if (candidates[k] != 0 || !stage.scene.meshes.is_empty()) && wanted.any() {

@@ -65,12 +65,11 @@ pub fn split(shading: Shading, s: &Surface, d: V3) -> Split {
 
     // A blended normal may mirror into the body: lift such rays just over the true surface, but
     // never over where the true surface would mirror them, which flat mirrors show at grazing.
-    let facing = V3::select(s.inside, -s.outward, s.outward);
     let mirrored = d + n * (cos + cos);
-    let height = mirrored.dot(facing);
-    let least = (-d.dot(facing)).fast_max(splat(1e-6)).fast_min(splat(0.01));
+    let height = mirrored.dot(s.facing);
+    let least = (-d.dot(s.facing)).fast_max(splat(1e-6)).fast_min(splat(0.01));
     let lift = (least - height).fast_max(F::ZERO);
-    Split { reflectance, mirrored: (mirrored + facing * lift).normalize(), refracted, total }
+    Split { reflectance, mirrored: (mirrored + s.facing * lift).normalize(), refracted, total }
 }
 
 #[cfg(test)]

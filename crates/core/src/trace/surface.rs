@@ -29,8 +29,8 @@ pub struct Surface {
     pub point: V3,
     /// Unit normal for shading, on the side the ray came from.
     pub normal: V3,
-    /// Unit geometric normal that points out of the body.
-    pub outward: V3,
+    /// Unit geometric normal, on the side the ray came from.
+    pub facing: V3,
     /// Mask of rays that met the surface from behind: from inside a body.
     pub inside: F,
     /// Weights of the second and third corner of a mesh's triangle, else 0.
@@ -47,6 +47,12 @@ pub struct Surface {
 }
 
 impl Surface {
+    /// Unit geometric normal that points out of the body.
+    #[inline(always)]
+    pub fn outward(&self) -> V3 {
+        V3::select(self.inside, -self.facing, self.facing)
+    }
+
     /// One value of the material.
     #[inline(always)]
     pub fn value(&self, channel: Channel) -> F {
@@ -169,7 +175,7 @@ pub fn surface(scene: &Scene, quality: &Quality, rays: &Rays8, t: F, id: F, spre
     let mut s = Surface {
         point: zero,
         normal: up,
-        outward: up,
+        facing: up,
         inside: F::ZERO,
         uv: [F::ZERO; 2],
         clearance: F::ZERO,
@@ -190,7 +196,7 @@ pub fn surface(scene: &Scene, quality: &Quality, rays: &Rays8, t: F, id: F, spre
         if let (true, Shape::Field(field)) = (features::FIELDS, shape) {
             let found = on_field(field, p, t * spread, rays.direction);
             s.point = V3::select(mask, found.point, s.point);
-            s.outward = V3::select(mask, found.outward, s.outward);
+            s.facing = V3::select(mask, found.outward, s.facing);
             s.normal = V3::select(mask, found.outward, s.normal);
             // Twice what counts as a hit, and the rounding of the point.
             let off = splat(2.5 * quality.epsilon) + max_abs(found.point) * splat(4.0 / 8_388_608.0);
@@ -216,7 +222,7 @@ pub fn surface(scene: &Scene, quality: &Quality, rays: &Rays8, t: F, id: F, spre
             _ => locate(scene, shape, part, p),
         };
         s.point = V3::select(mask, point, s.point);
-        s.outward = V3::select(mask, outward, s.outward);
+        s.facing = V3::select(mask, outward, s.facing);
         s.normal = V3::select(mask, normal, s.normal);
         let scale = scale.fast_max(max_abs(point)).fast_max(splat(1e-30));
         s.clearance = mask.select(scale * splat(4.0 / 8_388_608.0), s.clearance);
@@ -226,8 +232,9 @@ pub fn surface(scene: &Scene, quality: &Quality, rays: &Rays8, t: F, id: F, spre
         }
         burn(material, mask, &mut s);
     }
-    s.inside = s.outward.dot(rays.direction).simd_gt(F::ZERO);
+    s.inside = s.facing.dot(rays.direction).simd_gt(F::ZERO);
     s.normal = V3::select(s.inside, -s.normal, s.normal);
+    s.facing = V3::select(s.inside, -s.facing, s.facing);
     texture(&mut s, rays.direction, t * spread);
     s
 }

@@ -30,7 +30,7 @@ pub fn texture(s: &mut Surface, d: V3, width: F) {
     let scale = s.value(Channel::Scale);
     let p = s.point * scale;
     let (mut value, mut gradient, mut details) = (F::ZERO, V3::ZERO, F::ONE);
-    let (kind, n) = (s.value(Channel::Pattern), s.outward);
+    let (kind, n) = (s.value(Channel::Pattern), s.outward());
     let mut draw = |pattern: Pattern, height: fn(V3, V3) -> Height| {
         let own = kind.simd_eq(splat(pattern as u32 as f32));
         if own.any() {

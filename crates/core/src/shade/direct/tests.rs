@@ -20,7 +20,7 @@ fn surface(roughness: f32, exponent: f32) -> Surface {
     Surface {
         point: V3::ZERO,
         normal: up,
-        outward: up,
+        facing: up,
         inside: FALSE,
         uv: [F::ZERO; 2],
         clearance: F::ZERO,

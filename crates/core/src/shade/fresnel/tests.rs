@@ -13,7 +13,7 @@ fn glass(normal: V3, facing: V3, inside: bool, ior: f32, f0: f32) -> Surface {
     Surface {
         point: V3::ZERO,
         normal,
-        outward: V3::select(inside, -facing, facing),
+        facing,
         inside,
         uv: [F::ZERO; 2],
         clearance: ZERO,

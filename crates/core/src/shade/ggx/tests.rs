@@ -17,7 +17,7 @@ fn surface(roughness: f32, f0: Vec3) -> Surface {
     Surface {
         point: V3::ZERO,
         normal: up,
-        outward: up,
+        facing: up,
         inside: FALSE,
         uv: [F::ZERO; 2],
         clearance: F::ZERO,

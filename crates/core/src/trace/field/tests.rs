@@ -238,18 +238,18 @@ fn normals_are_those_of_f64_and_rays_get_away() {
         let s = surface(&scene, &HIGH, &rays, solid.select(hit.t, F::ZERO), hit.id, F::ZERO);
         // Away at more than 4° over the surface, and into the body.
         let any = packet(|| (Vec3::ZERO, random.direction()));
-        let up = any.direction.dot(s.outward);
+        let up = any.direction.dot(s.outward());
         let away = V3::select(up.simd_lt(F::ZERO), -any.direction, any.direction);
-        let out = Rays8 { origin: s.point + s.outward * s.clearance, direction: away };
+        let out = Rays8 { origin: s.point + s.outward() * s.clearance, direction: away };
         let steep = up.abs().simd_gt(splat(0.07));
         let again = solid & steep & nearest(&scene, &HIGH, &out, u64::MAX, counters).id.simd_ge(F::ZERO);
         assert!(!again.any(), "hits itself: {node:?} {:?} {:?}", rays.origin, rays.direction);
-        let into = Rays8 { origin: s.point - s.outward * s.clearance, direction: -s.outward };
+        let into = Rays8 { origin: s.point - s.outward() * s.clearance, direction: -s.outward() };
         let exit = nearest(&scene, &HIGH, &into, u64::MAX, counters);
         let far = surface(&scene, &HIGH, &into, exit.t, exit.id, F::ZERO);
         for lane in (0..8).filter(|&lane| solid.to_array()[lane].to_bits() != 0) {
             seen += 1;
-            let (n, p) = (s.outward.lane(lane).as_dvec3(), s.point.lane(lane).as_dvec3());
+            let (n, p) = (s.outward().lane(lane).as_dvec3(), s.point.lane(lane).as_dvec3());
             let q = p - node.centre.as_dvec3();
             let edge = matches!(node.form, Form::Round(_))
                 && (q.y.abs() - 0.6).abs() < 0.03

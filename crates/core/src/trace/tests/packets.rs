@@ -96,7 +96,7 @@ fn found(stage: &Stage, rays: &Rays8) -> Vec<[u32; 8]> {
     let vectors = [
         s.point,
         s.normal,
-        s.outward,
+        s.outward(),
         light.reflectance,
         light.mirrored,
         light.refracted,

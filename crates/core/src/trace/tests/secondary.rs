@@ -131,7 +131,7 @@ fn run(kind: usize, radius: f32, cases: usize) -> (u32, u32, u32) {
         let scene = one(&mut random, kind, radius, far);
         let rays = aim(&mut random, &scene, radius, far.max(radius * 4.0));
         let (_, id, s) = hit(&scene, &rays);
-        let facing = V3::select(s.inside, -s.outward, s.outward);
+        let facing = s.facing;
         let away = V3::from_fn(|_| random.direction());
         // Any way out, and as flat as can be.
         let flat = away - facing * away.dot(facing);
@@ -226,6 +226,6 @@ fn normals_are_unit_vectors_also_at_a_tip() {
     let rays = packet(|| (Vec3::new(0.0, -2.0, 0.0), Vec3::Y));
     let (t, id, s) = hit(&scene, &rays);
     assert_eq!((t, id), (splat(2.0), F::ZERO));
-    assert_eq!((s.point.lane(0), s.outward.lane(0)), (Vec3::ZERO, -Vec3::Y));
+    assert_eq!((s.point.lane(0), s.outward().lane(0)), (Vec3::ZERO, -Vec3::Y));
     assert_eq!(s.value(Channel::Ior), splat(1.0));
 }

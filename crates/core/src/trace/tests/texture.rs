@@ -38,7 +38,7 @@ fn relief_has_the_normal_of_the_moved_surface() {
             let expected = Vec3::new(-g.x, 1.0, -g.z).normalize();
             let found = s.normal.lane(i);
             assert!((found - expected).length() < 1e-5, "{found} {expected} at {p:?}, case {case}");
-            assert_eq!(s.outward.lane(i), Vec3::Y, "only shading sees the relief");
+            assert_eq!(s.outward().lane(i), Vec3::Y, "only shading sees the relief");
         }
     }
 }
