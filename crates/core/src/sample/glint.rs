@@ -3,12 +3,12 @@
 //! Each sample's mirrored ray meets a rectangle's plane somewhere. If none meets the rectangle but
 //! the box around their places does, it may shine in between, however thin it is there.
 
-use super::refine::Corners;
+use super::refine::Known;
 use crate::render::Stage;
 use crate::trace::Shape;
 use glam::Vec2;
 
-impl Corners<'_> {
+impl Known<'_> {
     /// Whether the field with index `own`, on which all samples lie, may mirror a rectangle that
     /// none of them shows.
     #[inline(never)]
