@@ -44,6 +44,7 @@ counters! {
     Phong "Phong highlights",
     CookTorrance "Cook-Torrance highlights",
     Ggx "GGX highlights",
+    PointLights "evaluations of small lights",
     TextureLookups "texture lookups",
     Cells "cells of textures",
     Stripes "stripes of textures",

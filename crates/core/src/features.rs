@@ -22,6 +22,8 @@ pub const ENDLESS: bool = cfg!(feature = "endless");
 pub const BOUNCES: bool = cfg!(feature = "bounces");
 /// Mirrors of rough surfaces by several rays.
 pub const ROUGH: bool = cfg!(feature = "rough");
+/// Small lights in great number.
+pub const POINTS: bool = cfg!(feature = "points");
 /// Triangle meshes.
 pub const MESHES: bool = cfg!(feature = "meshes");
 /// Meshes with interpolated normals.
@@ -37,7 +39,7 @@ pub const BRICK: bool = cfg!(feature = "brick");
 pub const SCRATCHES: bool = cfg!(feature = "scratches");
 
 /// Each feature with the counter that shows it at work.
-pub const ALL: [(&str, Counter); 14] = [
+pub const ALL: [(&str, Counter); 15] = [
     ("ggx", Counter::Ggx),
     ("bumps", Counter::Bumps),
     ("fields", Counter::FieldSteps),
@@ -46,6 +48,7 @@ pub const ALL: [(&str, Counter); 14] = [
     ("endless", Counter::EndlessTests),
     ("bounces", Counter::ScatterRays),
     ("rough", Counter::RoughRays),
+    ("points", Counter::PointLights),
     ("meshes", Counter::NodeVisits),
     ("smooth", Counter::SmoothFacets),
     ("cells", Counter::Cells),

@@ -9,6 +9,7 @@ use crate::mesh::Instance;
 use crate::quality::{Quality, Rung};
 use crate::sample::ROUGH;
 use crate::scene::{Field, LightKind, Material, Pattern, Scene, Shading};
+use crate::shade::MAX_POINTS;
 
 /// The machinery that a frame calls for, as the counters that it moves.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -19,7 +20,10 @@ impl Plan {
     pub fn of(scene: &Scene, quality: &Quality) -> Plan {
         let materials = || materials(scene);
         let lamps = !scene.lights.is_empty() || !scene.emitters.is_empty();
-        let lit = lamps && materials().any(|m| m.diffuse > 0.0 || m.specular.max_element() > 0.0);
+        let shows = materials().any(|m| m.diffuse > 0.0 || m.specular.max_element() > 0.0);
+        let lit = lamps && shows;
+        let points = !scene.points.is_empty() && shows;
+        let shines = lit || points;
         let chains = quality.depth > 0;
         let ggx = scene.shading == Shading::Ggx;
         let is_rough = |m: &Material| ggx && quality.rough > 0 && m.roughness > ROUGH && !m.is_transparent();
@@ -58,9 +62,10 @@ impl Plan {
             (Counter::Glows, !scene.background.glows.is_empty()),
             (Counter::ShadowRays, lit),
             (Counter::LightEvaluations, lit),
-            (Counter::Phong, lit && scene.shading == Shading::Phong),
-            (Counter::CookTorrance, lit && scene.shading == Shading::CookTorrance),
-            (Counter::Ggx, lit && scene.shading == Shading::Ggx),
+            (Counter::Phong, shines && scene.shading == Shading::Phong),
+            (Counter::CookTorrance, shines && scene.shading == Shading::CookTorrance),
+            (Counter::Ggx, shines && scene.shading == Shading::Ggx),
+            (Counter::PointLights, points),
             (Counter::TextureLookups, grain),
             (Counter::Cells, pattern(Pattern::Cells)),
             (Counter::Stripes, pattern(Pattern::Stripes)),
@@ -115,6 +120,7 @@ pub fn warnings(scene: &Scene, quality: &Quality) -> Vec<&'static str> {
         ),
         (scene.meshes.instances().iter().any(clear), "meshes of glass cast no shadow"),
         (scene.shape_count() + facets > 1 << 22, "more shapes and facets than ids"),
+        (scene.points.len() > MAX_POINTS, "small lights after the 512th do not shine"),
         (scene.lights.iter().any(|l| spot(l.kind)), "a spot's inner cone is wider than its outer one"),
         (scene.background.stops.windows(2).any(|s| s[0].y >= s[1].y), "the sky's stops do not ascend"),
     ];

@@ -41,7 +41,10 @@ pub struct Quality {
     pub epsilon: f32,
     /// Most steps of a ray that marches; one that is near a body by then has hit it.
     pub steps: u32,
-    /// Leave out shapes and occluders that a tile can't meet. Changes the time, never the picture.
+    /// Side of the tiles of the screen by which small lights are culled, px, at least 1. Changes the
+    /// time, never the picture (but for the one that counts the lights).
+    pub light_tile: u32,
+    /// Leave out shapes, lights and occluders that a tile can't meet. Changes the time, never the picture.
     pub cull: bool,
     /// Frames with different sample patterns that are averaged: 1, more for a still.
     pub average: u32,
@@ -65,6 +68,7 @@ impl Quality {
                 cutoff: 0.1,
                 epsilon: 2e-3,
                 steps: 48,
+                light_tile: 16,
                 cull: true,
                 average: 1,
             },
@@ -84,6 +88,7 @@ impl Quality {
                 cutoff: 0.06,
                 epsilon: 1e-3,
                 steps: 64,
+                light_tile: 16,
                 cull: true,
                 average: 1,
             },
@@ -103,6 +108,7 @@ impl Quality {
                 cutoff: 0.04,
                 epsilon: 5e-4,
                 steps: 96,
+                light_tile: 16,
                 cull: true,
                 average: 1,
             },
@@ -122,6 +128,7 @@ impl Quality {
                 cutoff: 0.02,
                 epsilon: 3e-4,
                 steps: 128,
+                light_tile: 16,
                 cull: true,
                 average: 1,
             },
@@ -141,6 +148,7 @@ impl Quality {
                 cutoff: 0.01,
                 epsilon: 2e-4,
                 steps: 192,
+                light_tile: 16,
                 cull: true,
                 average: 1,
             },
@@ -160,6 +168,7 @@ impl Quality {
                 cutoff: 0.001,
                 epsilon: 1e-4,
                 steps: 384,
+                light_tile: 16,
                 cull: true,
                 average: 1,
             },

@@ -2,9 +2,11 @@
 //!
 //! `cargo lab stats [FRAME] [QUALITY] [WxH]` prints the counters of one frame, its time, and the
 //! peak signal-to-noise ratio of its display values against the same quality with every pixel
-//! traced.
+//! traced. `cargo lab lights` compares culled with naive small lights.
 
+mod lights;
 mod stats;
+mod swarm;
 
 use std::process::exit;
 
@@ -12,7 +14,8 @@ fn main() {
     let args: Vec<String> = std::env::args().skip(1).collect();
     let result = match args.first().map(String::as_str) {
         Some("stats") => stats::run(&args[1..]),
-        _ => Err("usage: cargo lab stats [FRAME] [QUALITY] [WxH]".into()),
+        Some("lights") => lights::run(),
+        _ => Err("usage: cargo lab stats [FRAME] [QUALITY] [WxH], or cargo lab lights".into()),
     };
     if let Err(message) = result {
         eprintln!("lab: {message}");

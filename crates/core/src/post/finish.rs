@@ -8,9 +8,9 @@ use super::bloom::{Bloom, Glow};
 use crate::counters::{Counter, Counters};
 use crate::math::hash::{hash2, mix_x8, unit_x8};
 use crate::math::lanes::{F, LANE_INDEX, RAMP, V3, load, splat, splat_u};
-use crate::parallel;
 use crate::render::Stage;
 use crate::sample::{Kind, TILE, Tile};
+use crate::{features, parallel};
 use glam::Vec3;
 
 /// Rows that are finished as one piece of work.
@@ -66,6 +66,13 @@ fn finish_row(
                 colour.set_lane(lane, painted);
             }
         }
+        if let (true, Some(points)) = (features::POINTS && stage.scene.light_count > 0.0, &stage.points) {
+            let at = stage.on_screen(x as f32 + 4.0, y as f32 + 0.5);
+            let depths = tile.depths((base * 8, y % TILE), stage.quality.light_tile as usize);
+            let count = points.count(&stage.scene.points, at.x, -at.y, depths);
+            let paint = V3::splat(light_count(count));
+            colour = colour + (paint - colour) * splat(stage.scene.light_count);
+        }
         if grade.vignette > 0.0 {
             let fx = (splat(x as f32 + 0.5) + RAMP) * splat(2.0 / w) - F::ONE;
             let r2 = (fx * fx + splat(fy * fy)) * splat(0.5);
@@ -88,6 +95,26 @@ fn finish_row(
 /// Colours of filled and interpolated pixels: #E0342B and #2D6BFF.
 const FILLED: Vec3 = Vec3::new(0.878, 0.204, 0.169);
 const INTERPOLATED: Vec3 = Vec3::new(0.176, 0.42, 1.0);
+
+/// Colours for 1, 4, 12, 32 and 64 small lights: #1B2A7A, #5A3FC0, #C05A9E, #FFB347, #FFF3D6.
+const COUNTS: [(f32, Vec3); 5] = [
+    (1.0, Vec3::new(0.106, 0.165, 0.478)),
+    (4.0, Vec3::new(0.353, 0.247, 0.753)),
+    (12.0, Vec3::new(0.753, 0.353, 0.62)),
+    (32.0, Vec3::new(1.0, 0.702, 0.278)),
+    (64.0, Vec3::new(1.0, 0.953, 0.839)),
+];
+
+/// Colour that stands for the number of small lights in a tile.
+#[inline(never)]
+fn light_count(count: u32) -> Vec3 {
+    let (mut from, mut colour) = (0.0, Vec3::ZERO);
+    for (to, next) in COUNTS {
+        colour += (next - colour) * ((count as f32 - from) / (to - from)).clamp(0.0, 1.0);
+        from = to;
+    }
+    colour
+}
 
 /// Shows how a pixel was got: 45 % red or blue, darker at the upper and left edge of large cells.
 fn overlay(tile: &Tile, (x, y): (usize, usize), colour: Vec3) -> Vec3 {

@@ -6,7 +6,7 @@ use crate::math::lanes::{F, V3, splat};
 use crate::post::Display;
 use crate::quality::{Quality, Rung};
 use crate::scene::Scene;
-use crate::shade::{Lamp, MAX_LAMPS, lamps};
+use crate::shade::{Lamp, MAX_LAMPS, Points, lamps};
 use crate::trace::Shape;
 use glam::{Vec2, Vec3};
 
@@ -30,6 +30,8 @@ pub struct Stage<'a> {
     pub pixel: f32,
     /// Sources of direct light.
     pub lamps: Vec<Lamp>,
+    /// Small lights, if the scene has any.
+    pub points: Option<Points>,
     /// Per shape: a power of two for a transparent one, 0 for an opaque one.
     pub bits: Vec<f32>,
     /// Factor on the light that crosses each transparent shape, in the order of their bits.
@@ -69,11 +71,14 @@ impl<'a> Stage<'a> {
         let lamps = lamps(scene);
         let shafts = shafts(scene, &lamps[..lamps.len().min(MAX_LAMPS)]);
         let pixel = 2.0 * scene.camera.half_width() / width as f32;
+        let points = (features::POINTS && !scene.points.is_empty())
+            .then(|| Points::new(&scene.points, view, [width, height], pixel, quality.light_tile));
         Self {
             scene,
             quality: *quality,
             width,
             height,
+            points,
             pattern: 0,
             shift: Vec2::ZERO,
             pixel,
@@ -92,6 +97,12 @@ impl<'a> Stage<'a> {
     /// Bounds of all shapes for each lamp that casts shadows.
     pub fn shafts(&self) -> std::slice::Chunks<'_, Shaft> {
         self.shafts.chunks(self.dops.len().max(1))
+    }
+
+    /// Whether what is added to finished pixels asks for the depths of their surfaces.
+    pub fn wants_depths(&self) -> bool {
+        (features::BEAMS && !self.scene.beams.is_empty())
+            || (features::POINTS && self.scene.light_count > 0.0)
     }
 
     /// Unit vector along the view axis.

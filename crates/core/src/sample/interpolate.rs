@@ -10,7 +10,6 @@ use super::scatter;
 use super::tile::{Kind, Record, TILE, Tile};
 use super::wave::soft;
 use crate::counters::{Counter, Counters};
-use crate::features;
 use crate::math::lanes::{F, LANE_INDEX, U, V3, splat, splat_u};
 use crate::quality::Rung;
 use crate::render::Stage;
@@ -69,7 +68,7 @@ pub(super) fn fill(
     };
     let rung =
         if first.relief_within(stage, cell.size) { Rung::Surface } else { most.min(stage.rung(first.id())) };
-    if features::BEAMS && !stage.scene.beams.is_empty() {
+    if stage.wants_depths() {
         fill_nearness(cell, known, tile);
     }
     let scale = splat(1.0 / cell.size as f32);

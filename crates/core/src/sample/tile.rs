@@ -96,6 +96,23 @@ impl Tile {
         Vec3::new(self.rgb[0][i], self.rgb[1][i], self.rgb[2][i])
     }
 
+    /// Least and greatest depth of the surfaces in the square of `side` px that holds a pixel; none
+    /// where only the background shows.
+    pub fn depths(&self, (x, y): (usize, usize), side: usize) -> [f32; 2] {
+        let side = side.min(TILE);
+        let (left, top) = (x / side * side, y / side * side);
+        let (mut nearest, mut farthest) = (0.0_f32, f32::INFINITY);
+        for row in top..(top + side).min(TILE) {
+            for &nearness in &self.nearness[row * TILE + left..row * TILE + (left + side).min(TILE)] {
+                if nearness > 0.0 {
+                    nearest = nearest.max(nearness);
+                    farthest = farthest.min(nearness);
+                }
+            }
+        }
+        [1.0 / nearest, 1.0 / farthest]
+    }
+
     /// Sets the pixel at (x, y).
     pub fn set(&mut self, x: usize, y: usize, colour: Vec3, record: Record) {
         let i = y * TILE + x;

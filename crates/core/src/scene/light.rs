@@ -29,6 +29,18 @@ pub struct Light {
     pub kind: LightKind,
 }
 
+/// One of up to 512 small lights. It lights like a [`Light`] without shadow, but ends at a distance:
+/// `colour / d² * (1 - (d / radius)^4)²`. To be seen it needs a [`crate::scene::Beam`] without length.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PointLight {
+    /// Position, world.
+    pub position: Vec3,
+    /// Distance from which on its light is exactly 0, world units.
+    pub radius: f32,
+    /// Intensity, linear RGB times strength.
+    pub colour: Vec3,
+}
+
 /// A rectangle that shines to one side. Surfaces are lit by one sample in its middle, as by a
 /// lamp of intensity `radiance * area / pi` with a cosine; mirrors and glass see the rectangle.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -19,7 +19,7 @@ pub use background::{Background, Disc, Glow, Stop};
 pub use beam::Beam;
 pub use camera::Camera;
 pub use field::{Field, Form, Join, Node};
-pub use light::{Emitter, Light, LightKind};
+pub use light::{Emitter, Light, LightKind, PointLight};
 pub use material::{Channel, Fire, Material};
 pub use shapes::{Cone, Cylinder, Plane, Sphere, Triangle};
 pub use texture::{Pattern, Texture};
@@ -128,6 +128,8 @@ pub struct Scene {
     pub emitters: Vec<Emitter>,
     /// Beams of light in the haze; they light nothing themselves.
     pub beams: Vec<Beam>,
+    /// Small lights without shadow, at most 512.
+    pub points: Vec<PointLight>,
     /// The reflection model for direct light.
     pub shading: Shading,
     /// Bounces of diffuse light that rays follow where the quality has samples for them, 0 to 3; after
@@ -141,6 +143,9 @@ pub struct Scene {
     pub grade: Grade,
     /// Show how the frame was sampled, on this share of the picture's width from the left.
     pub overlay: f32,
+    /// Show how many small lights reach the surfaces of each tile, over the picture with this
+    /// weight, 0 to 1.
+    pub light_count: f32,
 }
 
 impl Scene {

@@ -173,26 +173,48 @@ pub fn direct(
         }
         counters.add(Counter::LightEvaluations, 8);
         let light = tinted(stage, lamp, code) * (lit & (reach / d2));
-        let highlight = match stage.scene.shading {
-            Shading::Phong => {
-                counters.add(Counter::Phong, 8);
-                phong(s, l, v, n_l)
-            }
-            Shading::CookTorrance => {
-                counters.add(Counter::CookTorrance, 8);
-                cook_torrance(s, l, v, n_l)
-            }
-            Shading::Ggx if features::GGX => {
-                counters.add(Counter::Ggx, 8);
-                ggx(s, l, v) * n_l
-            }
-            Shading::Ggx => V3::ZERO,
-        };
         let hidden = if lamp.is_emitter { mirrors } else { zero };
-        sum.highlight += (light * highlight) & !hidden;
+        sum.highlight += (light * highlight(stage, s, l, v, n_l, counters)) & !hidden;
         sum.irradiance += light * n_l;
     }
+    if let Some(points) = stage.points.as_ref().filter(|_| features::POINTS) {
+        points.near(start, active, stage.quality.cull, |index| {
+            let Some(light) = stage.scene.points.get(index) else { return };
+            counters.add(Counter::PointLights, 8);
+            let to_light = V3::splat(light.position) - start;
+            let d2 = to_light.dot(to_light).fast_max(splat(1e-8));
+            let l = to_light * (F::ONE / d2.sqrt());
+            let n_l = s.normal.dot(l);
+            let r2 = light.radius * light.radius;
+            let lit = active & n_l.simd_gt(zero) & s.facing.dot(l).simd_gt(zero) & d2.simd_lt(splat(r2));
+            let x = d2 * splat(1.0 / r2);
+            let window = (F::ONE - x * x).fast_max(zero);
+            let light = V3::splat(light.colour) * (lit & (window * window / d2));
+            sum.highlight += light * highlight(stage, s, l, v, n_l, counters);
+            sum.irradiance += light * n_l;
+        });
+    }
     sum
+}
+
+/// The highlight of a lamp in unit direction `l`, by the scene's reflection model.
+#[inline(always)]
+fn highlight(stage: &Stage, s: &Surface, l: V3, v: V3, n_l: F, counters: &mut Counters) -> V3 {
+    match stage.scene.shading {
+        Shading::Phong => {
+            counters.add(Counter::Phong, 8);
+            phong(s, l, v, n_l)
+        }
+        Shading::CookTorrance => {
+            counters.add(Counter::CookTorrance, 8);
+            cook_torrance(s, l, v, n_l)
+        }
+        Shading::Ggx if features::GGX => {
+            counters.add(Counter::Ggx, 8);
+            ggx(s, l, v) * n_l
+        }
+        Shading::Ggx => V3::ZERO,
+    }
 }
 
 /// The lamp's colour behind the transparent shapes of each lane's code.

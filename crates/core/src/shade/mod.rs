@@ -7,6 +7,7 @@ mod fog;
 mod fresnel;
 mod ggx;
 mod lamps;
+mod points;
 
 pub use background::{background, emitters};
 pub use beam::beam;
@@ -15,3 +16,4 @@ pub use fog::fog;
 pub use fresnel::{Split, schlick, split};
 pub use ggx::sample;
 pub use lamps::{Lamp, lamps};
+pub use points::{MAX_POINTS, Mask, Points};

@@ -1,0 +1,145 @@
+//! Small lights in great number, culled twice: by the tiles of the screen that their balls of
+//! influence meet, and by the box around the eight points to be lit.
+//!
+//! A light falls off as `I / d² · (1 - (d/r)⁴)²` (Karis 2013, Real Shading in Unreal Engine 4) and is
+//! exactly 0 from its radius r on. What is culled would have added exactly 0, so culling never changes
+//! a bit. A tile is the part common to a column and a row of the screen, so a mask of lights for each
+//! of these is enough: a ball meets a column if it lies not wholly behind one of the column's two
+//! planes through the eye.
+
+use crate::cull::View;
+use crate::math::lanes::{F, V3, splat};
+use crate::scene::PointLight;
+use glam::Vec3;
+
+/// Small lights of a scene that shine; those after them don't.
+pub const MAX_POINTS: usize = 512;
+
+/// A set of small lights: bit i of word w is light 64 w + i.
+pub type Mask = [u64; MAX_POINTS / 64];
+
+/// Eight lights side by side. Lanes past the last light lie at infinity and reach nowhere.
+struct Eight {
+    position: V3,
+    radius: F,
+}
+
+/// The small lights of a scene, ready for a frame.
+pub struct Points {
+    eights: Vec<Eight>,
+    view: View,
+    /// Side of a tile, on the plane one unit ahead of the eye.
+    side: f32,
+    /// Left and upper edge of the picture on that plane, x right and y down.
+    corner: [f32; 2],
+    /// Lights whose balls meet each column and each row of tiles.
+    bands: [Vec<Mask>; 2],
+}
+
+/// How far a tile's planes lie outside of it, as a share of its side: much more than rounding.
+const SLACK: f32 = 1e-3;
+
+impl Points {
+    /// Sorts `lights` into tiles of `side` px of a picture of `size` px, whose pixels are `pixel`
+    /// wide on the plane one unit ahead.
+    #[inline(never)]
+    pub fn new(lights: &[PointLight], view: View, size: [u32; 2], pixel: f32, side: u32) -> Self {
+        let side = pixel * side as f32;
+        let corner = size.map(|n| -0.5 * n as f32 * pixel);
+        let count = corner.map(|c| (-2.0 * c / side) as usize + 1);
+        let mut bands = count.map(|n| vec![Mask::default(); n]);
+        let mut eights = Vec::new();
+        for (i, light) in lights.iter().take(MAX_POINTS).enumerate() {
+            if i % 8 == 0 {
+                eights.push(Eight { position: V3::splat(Vec3::INFINITY), radius: F::ZERO });
+            }
+            let eight: &mut Eight = &mut eights[i / 8];
+            eight.position.set_lane(i % 8, light.position);
+            eight.radius.as_mut_array()[i % 8] = light.radius;
+            let v = view.local(light.position);
+            let radius = light.radius * 1.001;
+            for (axis, bands) in bands.iter_mut().enumerate() {
+                let at = [v.x, -v.y][axis];
+                for (k, mask) in bands.iter_mut().enumerate() {
+                    let edge = corner[axis] + k as f32 * side;
+                    let (lo, hi) = (edge - SLACK * side, edge + (1.0 + SLACK) * side);
+                    let reach = |edge: f32| radius * (1.0 + edge * edge).sqrt();
+                    if at - v.z * lo >= -reach(lo) && at - v.z * hi <= reach(hi) && v.z + radius > 0.0 {
+                        mask[i / 64] |= 1 << (i % 64);
+                    }
+                }
+            }
+        }
+        Self { eights, view, side, corner, bands }
+    }
+
+    /// Lights whose balls meet the tile at a position on the plane one unit ahead, x right and y
+    /// down; none outside the picture.
+    pub fn tile(&self, x: f32, y: f32) -> Option<Mask> {
+        let band = |axis: usize, at: f32| {
+            let at = (at - self.corner[axis]) / self.side;
+            // Negative numbers turn to 0 in the cast, so they are asked about first.
+            if at >= 0.0 { self.bands[axis].get(at as usize) } else { None }
+        };
+        let (column, row) = (band(0, x)?, band(1, y)?);
+        Some(std::array::from_fn(|i| column[i] & row[i]))
+    }
+
+    /// How many lights reach the surfaces of a tile, [`Self::tile`], that lie between two depths.
+    pub fn count(&self, lights: &[PointLight], x: f32, y: f32, depths: [f32; 2]) -> u32 {
+        let mask = self.tile(x, y).unwrap_or_default();
+        let reaches = |&(i, light): &(usize, &PointLight)| {
+            let z = self.view.local(light.position).z;
+            let meets = z + light.radius > depths[0] && z - light.radius < depths[1];
+            mask[i / 64] >> (i % 64) & 1 == 1 && meets
+        };
+        lights.iter().take(MAX_POINTS).enumerate().filter(reaches).count() as u32
+    }
+
+    /// Calls `light` with the index of each light whose ball meets the box around the points in
+    /// lanes `active`, in ascending order.
+    #[inline(always)]
+    pub fn near(&self, points: V3, active: F, cull: bool, mut light: impl FnMut(usize)) {
+        let (lo, hi, mask) = self.around(points, active, cull);
+        for (k, eight) in self.eights.iter().enumerate() {
+            let among = mask[k / 8] >> (k % 8 * 8) & 255;
+            if among == 0 {
+                continue;
+            }
+            // The same operations as for the distance to a point of the box, which is never less.
+            let c = eight.position;
+            let beside = |c: F, lo: f32, hi: f32| (splat(lo) - c).fast_max(c - splat(hi)).fast_max(F::ZERO);
+            let off = V3::new(beside(c.x, lo.x, hi.x), beside(c.y, lo.y, hi.y), beside(c.z, lo.z, hi.z));
+            let near = off.dot(off).simd_lt(eight.radius * eight.radius).to_bitmask() as u64;
+            let mut bits = if cull { near & among } else { among };
+            while bits != 0 {
+                light(k * 8 + bits.trailing_zeros() as usize);
+                bits &= bits - 1;
+            }
+        }
+    }
+
+    /// Bounds of the points in lanes `active`, and the lights of all tiles that show them.
+    #[inline(never)]
+    fn around(&self, points: V3, active: F, cull: bool) -> (Vec3, Vec3, Mask) {
+        let (mut lo, mut hi) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+        let mut mask = Mask::default();
+        for lane in 0..8 {
+            if active.to_bitmask() >> lane & 1 == 0 {
+                continue;
+            }
+            let p = points.lane(lane);
+            (lo, hi) = (lo.min(p), hi.max(p));
+            let v = self.view.local(p);
+            let seen = if v.z > 0.0 && cull { self.tile(v.x / v.z, -v.y / v.z) } else { None };
+            let seen = seen.unwrap_or([u64::MAX; MAX_POINTS / 64]);
+            for (word, seen) in mask.iter_mut().zip(seen) {
+                *word |= seen;
+            }
+        }
+        (lo, hi, mask)
+    }
+}
+
+#[cfg(test)]
+mod tests;
