@@ -28,7 +28,9 @@ impl Patch {
     #[inline(never)]
     fn of(known: &Known, value: fn(Sample) -> Vec3) -> Patch {
         let [a, b, c, d, centre] = known.samples.map(value);
-        let bump = (centre - known.mean(value)) * 16.0;
+        // A cell that was too small to be split may end on an edge: a bump would dot it.
+        let bend = if known.same_surface() { 16.0 } else { 0.0 };
+        let bump = (centre - known.mean(value)) * bend;
         Patch([a, b, c, d, bump])
     }
 

@@ -161,7 +161,7 @@ impl Known<'_> {
     }
 
     /// Whether all samples saw the same surface from about the same side, by the same lamps.
-    fn same_surface(&self) -> bool {
+    pub fn same_surface(&self) -> bool {
         self.all(|s, first| {
             s.surface() == first.surface() && (s.id() < 0.0 || s.normal().dot(first.normal()) > 0.5)
         })
