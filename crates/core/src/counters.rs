@@ -69,6 +69,7 @@ pub struct Counters {
     counts: [u64; Counter::ALL.len()],
 }
 
+#[allow(clippy::derivable_impls, reason = "not with the feature: arrays over 32 have no default")]
 impl Default for Counters {
     fn default() -> Self {
         Self {
