@@ -1,14 +1,14 @@
 //! A display of one's own and what a user does there: look, press keys, close windows.
 //!
 //! xdotool presses real keys (XTEST) and xwd looks. The message by which a window manager closes a
-//! window is sent by hand, over the display's socket, because no tool sends it.
+//! window is sent over a connection of our own, because no tool sends it.
 
 use super::{luc, require};
-use std::io::{Read, Write};
-use std::os::unix::net::UnixStream;
+use std::io::Read;
 use std::process::{Child, Command, Stdio};
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::{Duration, Instant};
+use x11rb::protocol::xproto::{ClientMessageEvent, ConnectionExt, EventMask};
 
 /// A virtual screen; gone with this value.
 pub struct Screen {
@@ -170,10 +170,12 @@ impl Player<'_> {
 
     /// Closes the window as a window manager does.
     pub fn close(&self) {
-        let mut x = X11::connect(self.screen.number);
-        let protocols = x.atom("WM_PROTOCOLS");
-        let delete = x.atom("WM_DELETE_WINDOW");
-        x.message(self.window.parse().unwrap(), protocols, delete);
+        let (x, _) = x11rb::connect(Some(&self.screen.name())).unwrap();
+        let atom = |name: &[u8]| x.intern_atom(false, name).unwrap().reply().unwrap().atom;
+        let data = [atom(b"WM_DELETE_WINDOW"), 0, 0, 0, 0];
+        let window = self.window.parse().unwrap();
+        let message = ClientMessageEvent::new(32, window, atom(b"WM_PROTOCOLS"), data);
+        x.send_event(false, window, EventMask::NO_EVENT, message).unwrap().check().unwrap();
     }
 
     /// Checks that the end comes within two seconds and is a quiet one.
@@ -202,51 +204,5 @@ impl Drop for Player<'_> {
     fn drop(&mut self) {
         let _ = self.child.kill();
         let _ = self.child.wait();
-    }
-}
-
-/// As much of the X11 protocol as a message to a window takes.
-struct X11(UnixStream);
-
-impl X11 {
-    fn connect(number: u32) -> Self {
-        // Where X11 puts the sockets of all local displays.
-        let mut stream = UnixStream::connect(format!("/tmp/.X11-unix/X{number}")).unwrap();
-        stream.write_all(&[b'l', 0, 11, 0, 0, 0, 0, 0, 0, 0, 0, 0]).unwrap(); // little endian, 11.0
-        let mut head = [0; 8];
-        stream.read_exact(&mut head).unwrap();
-        assert_eq!(head[0], 1, "the display lets us in");
-        let mut rest = vec![0; 4 * usize::from(u16::from_le_bytes([head[6], head[7]]))];
-        stream.read_exact(&mut rest).unwrap();
-        X11(stream)
-    }
-
-    fn reply(&mut self) -> [u8; 32] {
-        let mut reply = [0; 32];
-        self.0.read_exact(&mut reply).unwrap();
-        assert_eq!(reply[0], 1, "a reply, not an error");
-        reply
-    }
-
-    fn atom(&mut self, name: &str) -> u32 {
-        let words = name.len().div_ceil(4);
-        let mut request = vec![16, 0, (2 + words) as u8, 0, name.len() as u8, 0, 0, 0]; // InternAtom
-        request.extend_from_slice(name.as_bytes());
-        request.resize(8 + 4 * words, 0);
-        self.0.write_all(&request).unwrap();
-        let reply = self.reply();
-        u32::from_le_bytes(reply[8..12].try_into().unwrap())
-    }
-
-    fn message(&mut self, window: u32, kind: u32, value: u32) {
-        let mut request = vec![25, 0, 11, 0]; // SendEvent
-        request.extend_from_slice(&window.to_le_bytes());
-        request.extend_from_slice(&[0, 0, 0, 0, 33, 32, 0, 0]); // to its owner; ClientMessage, 32 bit values
-        for word in [window, kind, value, 0, 0, 0, 0] {
-            request.extend_from_slice(&word.to_le_bytes());
-        }
-        request.extend_from_slice(&[43, 0, 1, 0]); // GetInputFocus, whose reply says that all is done
-        self.0.write_all(&request).unwrap();
-        self.reply();
     }
 }

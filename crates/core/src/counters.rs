@@ -64,18 +64,17 @@ counters! {
 
 /// A set of counts; sums are exact, so they do not depend on threads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(not(feature = "counters"), derive(Default))]
 pub struct Counters {
     #[cfg(feature = "counters")]
     counts: [u64; Counter::ALL.len()],
 }
 
-#[allow(clippy::derivable_impls, reason = "not with the feature: arrays over 32 have no default")]
+// Arrays over 32 have no default of their own.
+#[cfg(feature = "counters")]
 impl Default for Counters {
     fn default() -> Self {
-        Self {
-            #[cfg(feature = "counters")]
-            counts: [0; Counter::ALL.len()],
-        }
+        Self { counts: [0; Counter::ALL.len()] }
     }
 }
 

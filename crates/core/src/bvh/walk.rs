@@ -15,7 +15,7 @@
 
 use super::{EMPTY, LEAF_BIT, Node, Tree, range};
 use crate::counters::{Counter, Counters};
-use crate::math::lanes::{F, V3, greatest, least, max, min, splat};
+use crate::math::lanes::{F, greatest, least, max, min, splat};
 use crate::trace::Rays8;
 
 /// What is still to be visited, of a tree and of those in its leaves, with the distance from which
@@ -66,10 +66,6 @@ impl Axis {
     }
 }
 
-fn size(v: V3) -> F {
-    v.x.abs().fast_max(v.y.abs()).fast_max(v.z.abs())
-}
-
 impl Node {
     /// From which distance on each box may be met, and the mask of those met before `limit`.
     #[inline(always)]
@@ -102,7 +98,7 @@ impl Tree {
         }
         let Rays8 { origin: o, direction: d } = rays;
         let reach = self.bounds.lo.abs().max(self.bounds.hi.abs()).max_element();
-        let room = (greatest(size(*o)) + splat(reach)) * splat(1.0 / 1_048_576.0);
+        let room = (greatest(o.max_abs()) + splat(reach)) * splat(1.0 / 1_048_576.0);
         let axes = [Axis::new(o.x, d.x, room), Axis::new(o.y, d.y, room), Axis::new(o.z, d.z, room)];
         let base = stack.len;
         let mut next = (0, 0.0);

@@ -280,6 +280,12 @@ impl V3 {
         )
     }
 
+    /// The greatest size of a coordinate; a NaN among them may show or not.
+    #[inline(always)]
+    pub fn max_abs(self) -> F {
+        self.x.abs().fast_max(self.y.abs()).fast_max(self.z.abs())
+    }
+
     /// |v|², without overflow for |v| < 1.8e19.
     #[inline(always)]
     pub fn length_squared(self) -> F {

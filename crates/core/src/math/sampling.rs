@@ -3,9 +3,19 @@
 use super::hash::{hash2_x8, unit_x8};
 use super::lanes::{F, U, V3, copysign, splat, splat_u};
 use super::lanes_fn::sin_cos;
+use glam::Vec2;
 
 /// The inverse powers of the plastic number, times 2³²: steps of the R2 sequence (Roberts 2018).
 const STEP: [u32; 2] = [0xc13f_a9a9, 0x91e1_0da5];
+
+/// Point `i` of the R2 sequence that begins in the middle of the unit square.
+pub fn r2(i: u32) -> Vec2 {
+    let along = |step: f32| {
+        let x = 0.5 + i as f32 * step;
+        x - x.floor()
+    };
+    Vec2::new(along(0.754_877_7), along(0.569_840_3))
+}
 
 /// Point `i` in the unit square, without its upper borders, of each lane's own sequence: R2 moved
 /// by a random vector (Cranley and Patterson 1976). Whole numbers, so that it never loses digits.

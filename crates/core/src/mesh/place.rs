@@ -125,12 +125,11 @@ impl Instance {
         }
         let w = &self.world_from_mesh;
         let stretch = (w.x_axis.abs() + w.y_axis.abs() + w.z_axis.abs()).max_element();
-        let size = p.x.abs().fast_max(p.y.abs()).fast_max(p.z.abs());
         Facets {
             point: times(w, p) + V3::splat(self.origin),
             outward,
             normal,
-            reach: size * splat(4.0 * stretch) + splat(4.0 * self.origin.abs().max_element()),
+            reach: p.max_abs() * splat(4.0 * stretch) + splat(4.0 * self.origin.abs().max_element()),
             uv: [weights[1], weights[2]],
         }
     }

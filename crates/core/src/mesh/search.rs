@@ -21,10 +21,6 @@ const APART: f32 = 0.1;
 /// Greatest coordinate that rays may have.
 const FAR: f32 = 1e18;
 
-fn size(v: V3) -> F {
-    v.x.abs().fast_max(v.y.abs()).fast_max(v.z.abs())
-}
-
 /// Greatest difference of a coordinate between lanes.
 #[inline(never)]
 fn spread(v: V3) -> F {
@@ -59,7 +55,8 @@ impl Assembly {
         best: &mut Hits,
         counters: &mut Counters,
     ) {
-        let asked = wanted & size(rays.origin).simd_lt(splat(FAR)) & size(rays.direction).simd_lt(splat(FAR));
+        let asked =
+            wanted & rays.origin.max_abs().simd_lt(splat(FAR)) & rays.direction.max_abs().simd_lt(splat(FAR));
         let mut todo = asked.to_bitmask();
         while todo != 0 && !self.is_empty() {
             // Lanes that aren't asked about run with the first that is.
@@ -69,8 +66,9 @@ impl Assembly {
                 origin: V3::select(asked, rays.origin, one(rays.origin)),
                 direction: V3::select(asked, rays.direction, one(rays.direction)),
             };
-            let close = spread(bundle.direction).simd_lt(greatest(size(bundle.direction)) * splat(SPREAD))
-                & spread(bundle.origin).simd_lt(greatest(size(bundle.origin)) * splat(APART));
+            let close = spread(bundle.direction)
+                .simd_lt(greatest(bundle.direction.max_abs()) * splat(SPREAD))
+                & spread(bundle.origin).simd_lt(greatest(bundle.origin.max_abs()) * splat(APART));
             let single = !close.all();
             let of_first = |v: F| splat(v.as_array()[first]);
             let mut found = Hits { t: of_first(best.t), id: of_first(best.id) };

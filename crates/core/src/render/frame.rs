@@ -2,12 +2,12 @@
 
 use super::Stage;
 use crate::counters::Counters;
+use crate::math::sampling::r2;
 use crate::post::Bloom;
 use crate::quality::Quality;
 use crate::sample::{Scratch, TILE, Tile, beams, refine, share_edges, smooth_edges};
 use crate::scene::Scene;
 use crate::{parallel, post};
-use glam::Vec2;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Work on the tile whose upper left pixel is given.
@@ -58,12 +58,14 @@ impl Renderer {
         let down = (height as usize).div_ceil(TILE);
         self.tiles.resize_with(across * down, Tile::default);
         let pool = &self.scratch;
-        let passes: [Pass; 3] = [refine, smooth_edges, beams];
+        // Edges are shared out after the first pass, which finds them.
+        let passes: [(Pass, bool); 3] = [(refine, true), (smooth_edges, false), (beams, false)];
         self.counters = Counters::default();
         let mut sums = Vec::new();
         for pattern in 0..quality.average {
-            (stage.pattern, stage.shift) = (pattern, shift(pattern));
-            for pass in passes {
+            // The first pattern lies in the middle of the pixels.
+            (stage.pattern, stage.shift) = (pattern, r2(pattern) - 0.5);
+            for (pass, finds_edges) in passes {
                 parallel::each(self.tiles.iter_mut(), |i, tile| {
                     let mut scratch = pool.take();
                     scratch.counters = Counters::default();
@@ -71,7 +73,9 @@ impl Renderer {
                     tile.counters = scratch.counters;
                     pool.give(scratch);
                 });
-                share_edges(&mut self.tiles, across);
+                if finds_edges {
+                    share_edges(&mut self.tiles, across);
+                }
                 for tile in &self.tiles {
                     self.counters.merge(&tile.counters);
                 }
@@ -82,16 +86,6 @@ impl Renderer {
         }
         self.counters.merge(&post::finish(&stage, &self.tiles, &mut self.bloom, n, pixels));
     }
-}
-
-/// Where pattern `k` moves the samples: points of the R2 sequence about the middle of a pixel, the
-/// first of which is the middle itself.
-fn shift(k: u32) -> Vec2 {
-    let offset = |step: f32| {
-        let x = 0.5 + k as f32 * step;
-        x - x.floor() - 0.5
-    };
-    Vec2::new(offset(0.754_877_7), offset(0.569_840_3))
 }
 
 /// Adds the light of the tiles to `sums`, and puts the mean of all `count` so far in its place.

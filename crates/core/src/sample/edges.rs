@@ -7,22 +7,17 @@
 use super::tile::{Kind, Record, TILE, Tile};
 use super::wave::{Position, Scratch, trace};
 use crate::counters::Counter;
+use crate::math::sampling::r2;
 use crate::render::Stage;
 use glam::Vec3;
-
-/// Offsets of the R2 sequence from 0: multiples of the inverse powers of the plastic number.
-const STEP: [f32; 2] = [0.754_877_7, 0.569_840_3];
 
 /// Samples that are traced at once: keeps the lists in the cache.
 const BATCH: usize = 1024;
 
 /// Position of sample `i` of the pixel at (x, y).
 fn place(x: usize, y: usize, i: u32) -> Position {
-    let offset = |step: f32| {
-        let v = 0.5 + i as f32 * step;
-        v - v.floor()
-    };
-    (x as f32 + offset(STEP[0]), y as f32 + offset(STEP[1]))
+    let offset = r2(i);
+    (x as f32 + offset.x, y as f32 + offset.y)
 }
 
 fn compress(c: Vec3) -> Vec3 {

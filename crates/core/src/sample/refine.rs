@@ -262,14 +262,16 @@ impl Surroundings {
             }
         }
         let meshes = &stage.scene.meshes;
-        let [right, up, forward] = [0, 1, 2].map(|axis| stage.view.world_from_view.col(axis));
-        let towards = |sign: (f32, f32)| {
-            let p = at + reach * Vec2::from(sign);
-            right * p.x + up * p.y + forward
-        };
-        let corners = [(-1.0, 1.0), (1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)].map(towards);
-        if meshes.may_lie_between(stage.view.origin, corners, depths, counters) {
-            return true;
+        if !meshes.is_empty() {
+            let [right, up, forward] = [0, 1, 2].map(|axis| stage.view.world_from_view.col(axis));
+            let towards = |sign: (f32, f32)| {
+                let p = at + reach * Vec2::from(sign);
+                right * p.x + up * p.y + forward
+            };
+            let corners = [(-1.0, 1.0), (1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)].map(towards);
+            if meshes.may_lie_between(stage.view.origin, corners, depths, counters) {
+                return true;
+            }
         }
         if own == usize::MAX {
             return false;

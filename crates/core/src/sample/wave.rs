@@ -40,8 +40,7 @@ struct Boxes(Vec<(f32, Bounds)>);
 impl Boxes {
     /// Adds the points of a packet's hits; shapes from number `facets` on are facets of meshes.
     fn add(&mut self, points: V3, ids: F, facets: f32) {
-        // The part of the shape makes no difference.
-        // Facets share one box.
+        // The part of the shape makes no difference; facets share one box.
         let shapes = (ids * splat(0.25)).floor().fast_min(splat(facets));
         let mut todo = ids.simd_ge(F::ZERO).to_bitmask();
         while todo != 0 {

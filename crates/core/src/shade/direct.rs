@@ -55,8 +55,8 @@ pub fn ambient(stage: &Stage, direction: V3) -> V3 {
     V3::splat(below) + V3::splat(above - below) * x
 }
 
-/// Adds the light from all around (by the normal's height; in lanes `bounces` rays find it) and the surface's own to that of the
-/// lamps; what a mirror takes away is missing from the diffuse part. Under GGX that is all that
+/// Adds the light from all around (by the normal's height; in lanes `bounces` rays find it) and the
+/// surface's own to that of the lamps; what a mirror takes away is missing from the diffuse part. Under GGX that is all that
 /// the microfacets reflect: the share that isn't traced is the mean light from there.
 #[inline(never)]
 pub fn local(
@@ -141,9 +141,7 @@ pub fn direct(
     let mirrors = s.value(Channel::Reflection).simd_gt(zero);
     let start = s.point + s.facing * s.clearance;
     for (k, lamp) in stage.lamps.iter().enumerate() {
-        let to_lamp = V3::splat(lamp.position) - start;
-        let d2 = to_lamp.dot(to_lamp).fast_max(splat(1e-8));
-        let l = to_lamp * (F::ONE / d2.sqrt());
+        let (to_lamp, d2, l) = towards(lamp.position, start);
         let n_l = s.normal.dot(l);
         let reach = lamp.lobe(-l);
         // Mirrors show shining rectangles themselves, in place of a highlight.
@@ -181,9 +179,7 @@ pub fn direct(
         points.near(start, active, stage.quality.cull, |index| {
             let Some(light) = stage.scene.points.get(index) else { return };
             counters.add(Counter::PointLights, 8);
-            let to_light = V3::splat(light.position) - start;
-            let d2 = to_light.dot(to_light).fast_max(splat(1e-8));
-            let l = to_light * (F::ONE / d2.sqrt());
+            let (_, d2, l) = towards(light.position, start);
             let n_l = s.normal.dot(l);
             let r2 = light.radius * light.radius;
             let lit = active & n_l.simd_gt(zero) & s.facing.dot(l).simd_gt(zero) & d2.simd_lt(splat(r2));
@@ -195,6 +191,14 @@ pub fn direct(
         });
     }
     sum
+}
+
+/// The way from points to a lamp, its square length and its direction.
+#[inline(always)]
+fn towards(position: Vec3, start: V3) -> (V3, F, V3) {
+    let way = V3::splat(position) - start;
+    let d2 = way.dot(way).fast_max(splat(1e-8));
+    (way, d2, way * (F::ONE / d2.sqrt()))
 }
 
 /// The highlight of a lamp in unit direction `l`, by the scene's reflection model.

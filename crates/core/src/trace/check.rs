@@ -11,9 +11,11 @@
 //!
 //! `{:?}` of an f32 reads back to the same bits, so a printed shape and ray replay a failure.
 
-use super::{Rays8, Span};
+use super::{Rays8, Span, Surface};
 use crate::math::hash::{hash2, unit};
-use crate::math::lanes::V3;
+use crate::math::lanes::{self, F, V3};
+use crate::math::scalar::sin_cos;
+use crate::scene::Material;
 use glam::{DVec3, Vec3};
 
 /// Half an ulp of 1.
@@ -264,6 +266,28 @@ pub fn two_to(k: i32) -> f32 {
 pub fn half_ulp(x: f64) -> f64 {
     let x = (x.abs() as f32).max(f32::MIN_POSITIVE);
     0.5 * f64::from(x.next_up() - x)
+}
+
+/// A surface in the origin with these unit normals.
+pub fn surface(material: Material, normal: V3, facing: V3, inside: F) -> Surface {
+    Surface {
+        point: V3::ZERO,
+        normal,
+        facing,
+        inside,
+        uv: [F::ZERO; 2],
+        clearance: F::ZERO,
+        node: F::ZERO,
+        part: F::ZERO,
+        material: material.channels().map(lanes::splat),
+    }
+}
+
+/// Unit vector of this cosine to y.
+pub fn tilted(cos: f32, turn: f32) -> Vec3 {
+    let sine = ((1.0 - cos) * (1.0 + cos)).max(0.0).sqrt();
+    let (s, c) = sin_cos(turn);
+    Vec3::new(sine * c, cos, sine * s)
 }
 
 /// Eight rays, lane by lane.

@@ -215,8 +215,7 @@ pub fn locate(field: &Field, p: V3, width: F, toward: V3) -> Point {
     let all = [TRUE; Field::MOST];
     let mut shares = [F::ZERO; Field::MOST];
     let value = distance(field, p, &all, Some(&mut shares));
-    let size = p.x.abs().fast_max(p.y.abs()).fast_max(p.z.abs());
-    let h = (splat(2e-3) + size * splat(4e-4)).fast_max(width * splat(0.5)).fast_min(splat(0.05));
+    let h = (splat(2e-3) + p.max_abs() * splat(4e-4)).fast_max(width * splat(0.5)).fast_min(splat(0.05));
     let mut sum = V3::ZERO;
     for axis in Vec3::AXES {
         let step = V3::splat(axis);

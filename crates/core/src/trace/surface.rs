@@ -83,14 +83,10 @@ impl Surface {
 /// Point, outward normal, shading normal and size of the largest coordinate, for one shape.
 type Located = (V3, V3, V3, F);
 
-fn max_abs(p: V3) -> F {
-    p.x.abs().fast_max(p.y.abs()).fast_max(p.z.abs())
-}
-
 /// Projects `p` onto the plane through `point` with unit normal `n`.
 fn onto_plane(p: V3, point: glam::Vec3, n: V3) -> Located {
     let point = V3::splat(point);
-    (p - n * n.dot(p - point), n, n, max_abs(point))
+    (p - n * n.dot(p - point), n, n, point.max_abs())
 }
 
 /// The sphere's normals, flowing into its neighbours' as those of a quadratic smooth minimum.
@@ -119,7 +115,7 @@ fn locate(scene: &Scene, shape: Shape, part: u32, p: V3) -> Located {
             let r = splat(s.radius);
             let n = (p - c).normalize();
             let p = c + n * r;
-            (p, n, blended(scene, s, p, n), max_abs(c) + r)
+            (p, n, blended(scene, s, p, n), c.max_abs() + r)
         }
         Shape::Plane(s) => onto_plane(p, s.point, V3::splat(s.normal)),
         Shape::Triangle(s) => {
@@ -149,7 +145,7 @@ fn round(
         let height = range[part as usize - 1];
         let n = if part == 1 { -a } else { a };
         let (point, n, normal, scale) = onto_plane(p, reference + axis * height, n);
-        return (point, n, normal, scale + max_abs(point - V3::splat(reference)));
+        return (point, n, normal, scale + (point - V3::splat(reference)).max_abs());
     }
     let reference = V3::splat(reference);
     let f = p - reference;
@@ -163,7 +159,7 @@ fn round(
     let scale = (F::ONE + slope * slope).sqrt();
     let n = V3::select(on_axis, radial, (radial - a * slope) * (F::ONE / scale));
     let off = (len - (splat(profile.0) + slope * height)) / scale;
-    (p - n * off, n, n, max_abs(reference) + height.abs() + len)
+    (p - n * off, n, n, reference.max_abs() + height.abs() + len)
 }
 
 /// Locates the surfaces that `rays` hit at distances `t`; ids as in [`super::Hits`]. `spread` is
@@ -199,7 +195,7 @@ pub fn surface(scene: &Scene, quality: &Quality, rays: &Rays8, t: F, id: F, spre
             s.facing = V3::select(mask, found.outward, s.facing);
             s.normal = V3::select(mask, found.outward, s.normal);
             // Twice what counts as a hit, and the rounding of the point.
-            let off = splat(2.5 * quality.epsilon) + max_abs(found.point) * splat(4.0 / 8_388_608.0);
+            let off = splat(2.5 * quality.epsilon) + found.point.max_abs() * splat(4.0 / 8_388_608.0);
             s.clearance = mask.select(off, s.clearance);
             mix(scene, field, &found.shares, mask, &mut s);
             burn(&scene.materials[shape.material()], mask, &mut s);
@@ -224,7 +220,7 @@ pub fn surface(scene: &Scene, quality: &Quality, rays: &Rays8, t: F, id: F, spre
         s.point = V3::select(mask, point, s.point);
         s.facing = V3::select(mask, outward, s.facing);
         s.normal = V3::select(mask, normal, s.normal);
-        let scale = scale.fast_max(max_abs(point)).fast_max(splat(1e-30));
+        let scale = scale.fast_max(point.max_abs()).fast_max(splat(1e-30));
         s.clearance = mask.select(scale * splat(4.0 / 8_388_608.0), s.clearance);
         let material = &scene.materials[shape.material()];
         for (lane, value) in s.material.iter_mut().zip(material.channels()) {

@@ -2,9 +2,8 @@
 
 use super::*;
 use crate::math::lanes::{FALSE, splat};
-use crate::math::scalar::sin_cos;
 use crate::scene::Material;
-use crate::trace::check::Random;
+use crate::trace::check::{self, Random, tilted};
 
 /// A surface that faces up.
 fn surface(roughness: f32, exponent: f32) -> Surface {
@@ -17,24 +16,7 @@ fn surface(roughness: f32, exponent: f32) -> Surface {
         ..Material::default()
     };
     let up = V3::splat(Vec3::Y);
-    Surface {
-        point: V3::ZERO,
-        normal: up,
-        facing: up,
-        inside: FALSE,
-        uv: [F::ZERO; 2],
-        clearance: F::ZERO,
-        node: F::ZERO,
-        part: F::ZERO,
-        material: material.channels().map(splat),
-    }
-}
-
-/// Unit vector of this cosine to the normal.
-fn at(cos: f32, turn: f32) -> Vec3 {
-    let sine = ((1.0 - cos) * (1.0 + cos)).max(0.0).sqrt();
-    let (s, c) = sin_cos(turn);
-    Vec3::new(sine * c, cos, sine * s)
+    check::surface(material, up, up, FALSE)
 }
 
 #[test]
@@ -43,12 +25,12 @@ fn highlights_are_finite_and_not_negative_at_grazing() {
     for _ in 0..50_000 {
         let s = surface(random.range(0.0, 1.0) * random.size(-14, 1).min(1.0), random.size(0, 12));
         let cos = |random: &mut Random| if random.one_in(8) { 0.0 } else { random.size(-30, 0) };
-        let l = at(cos(&mut random), random.range(0.0, 6.3));
+        let l = tilted(cos(&mut random), random.range(0.0, 6.3));
         // Seen from behind a blended normal too, and against the light.
         let v = match random.bits() % 4 {
             0 => -l,
-            1 => -at(cos(&mut random), 1.0),
-            _ => at(cos(&mut random), random.range(0.0, 6.3)),
+            1 => -tilted(cos(&mut random), 1.0),
+            _ => tilted(cos(&mut random), random.range(0.0, 6.3)),
         };
         for light in [cook_torrance, phong] {
             let found = light(&s, V3::splat(l), V3::splat(v), splat(l.y)).lane(0);
@@ -68,8 +50,8 @@ fn microfacets_reflect_the_same_both_ways() {
     let mut random = Random::new(601);
     for _ in 0..50_000 {
         let s = surface(random.range(0.05, 0.8), 1.0);
-        let l = at(random.range(0.01, 1.0), random.range(0.0, 6.3));
-        let v = at(random.range(0.01, 1.0), random.range(0.0, 6.3));
+        let l = tilted(random.range(0.01, 1.0), random.range(0.0, 6.3));
+        let v = tilted(random.range(0.01, 1.0), random.range(0.0, 6.3));
         let there = cook_torrance(&s, V3::splat(l), V3::splat(v), splat(l.y)).lane(0).x / l.y;
         let back = cook_torrance(&s, V3::splat(v), V3::splat(l), splat(v.y)).lane(0).x / v.y;
         assert!((there - back).abs() <= 1e-6 * there.max(back), "{there} {back}: l {l:?} v {v:?}");
@@ -79,14 +61,15 @@ fn microfacets_reflect_the_same_both_ways() {
 /// Light that a white surface sends to an eye at this cosine, all around being white: the integral
 /// of highlight / pi over the hemisphere by the midpoint rule, in cosine and turn.
 fn furnace(s: &Surface, cos: f32) -> f64 {
-    let v = V3::splat(at(cos, 0.0));
+    let v = V3::splat(tilted(cos, 0.0));
     let (rings, turns) = (512, 512);
     let mut sum = 0.0;
     for i in 0..rings {
         let c = (i as f32 + 0.5) / rings as f32;
         for k in (0..turns).step_by(8) {
-            let l =
-                V3::from_fn(|j| at(c, (k as f32 + j as f32 + 0.5) * std::f32::consts::TAU / turns as f32));
+            let l = V3::from_fn(|j| {
+                tilted(c, (k as f32 + j as f32 + 0.5) * std::f32::consts::TAU / turns as f32)
+            });
             let light = cook_torrance(s, l, v, l.y).x.to_array();
             sum += light.iter().map(|&x| f64::from(x)).sum::<f64>();
         }

@@ -3,24 +3,14 @@
 use super::*;
 use crate::math::lanes::{ZERO, splat};
 use crate::scene::Material;
-use crate::trace::check::{Random, U};
+use crate::trace::check::{self, Random, U};
 use glam::{DVec3, Vec3};
 
 /// A glass surface with this unit normal towards the rays and this geometric normal.
 fn glass(normal: V3, facing: V3, inside: bool, ior: f32, f0: f32) -> Surface {
     let material = Material { transparency: 1.0, ior, f0: Vec3::splat(f0), ..Material::default() };
     let inside = if inside { crate::math::lanes::TRUE } else { ZERO };
-    Surface {
-        point: V3::ZERO,
-        normal,
-        facing,
-        inside,
-        uv: [F::ZERO; 2],
-        clearance: ZERO,
-        node: ZERO,
-        part: ZERO,
-        material: material.channels().map(splat),
-    }
+    check::surface(material, normal, facing, inside)
 }
 
 /// Unit directions that fall on the side of `n`, grazing in part.

@@ -5,33 +5,15 @@ use crate::math::check::Worst;
 use crate::math::lanes::FALSE;
 use crate::math::lanes::splat_u;
 use crate::math::sampling::point;
-use crate::math::scalar::sin_cos;
 use crate::scene::Material;
-use crate::trace::check::Random;
+use crate::trace::check::{self, Random, tilted};
 use glam::Vec3;
 
 /// A surface that faces up.
 fn surface(roughness: f32, f0: Vec3) -> Surface {
     let material = Material { roughness, specular: Vec3::ONE, f0, ..Material::default() };
     let up = V3::splat(Vec3::Y);
-    Surface {
-        point: V3::ZERO,
-        normal: up,
-        facing: up,
-        inside: FALSE,
-        uv: [F::ZERO; 2],
-        clearance: F::ZERO,
-        node: F::ZERO,
-        part: F::ZERO,
-        material: material.channels().map(splat),
-    }
-}
-
-/// Unit vector of this cosine to the normal.
-fn at(cos: f32, turn: f32) -> Vec3 {
-    let sine = ((1.0 - cos) * (1.0 + cos)).max(0.0).sqrt();
-    let (s, c) = sin_cos(turn);
-    Vec3::new(sine * c, cos, sine * s)
+    check::surface(material, up, up, FALSE)
 }
 
 /// D: eight roundings of 2^-24, which is an ulp just under a power of two.
@@ -68,7 +50,8 @@ fn the_same_both_ways_bit_for_bit() {
     let mut random = Random::new(611);
     for case in 0..50_000 {
         let s = surface(random.range(0.0, 1.0), Vec3::new(0.9, 0.5, 0.04));
-        let (l, v) = (at(random.range(0.0, 1.0), random.range(0.0, 6.3)), at(random.range(0.0, 1.0), 1.0));
+        let (l, v) =
+            (tilted(random.range(0.0, 1.0), random.range(0.0, 6.3)), tilted(random.range(0.0, 1.0), 1.0));
         let there = ggx(&s, V3::splat(l), V3::splat(v)).lane(0);
         let back = ggx(&s, V3::splat(v), V3::splat(l)).lane(0);
         assert_eq!(
@@ -86,13 +69,13 @@ fn finite_and_not_negative_at_grazing_and_without_roughness() {
         let roughness = if random.one_in(4) { 0.0 } else { random.size(-14, 0) };
         let s = surface(roughness, Vec3::ONE);
         let cos = |random: &mut Random| if random.one_in(8) { 0.0 } else { random.size(-126, 0) };
-        let l = at(cos(&mut random), random.range(0.0, 6.3));
+        let l = tilted(cos(&mut random), random.range(0.0, 6.3));
         // Seen from behind a bent normal too, against the light, and where it is mirrored.
         let v = match random.bits() % 4 {
             0 => -l,
-            1 => -at(cos(&mut random), 1.0),
+            1 => -tilted(cos(&mut random), 1.0),
             2 => Vec3::new(-l.x, l.y, -l.z),
-            _ => at(cos(&mut random), random.range(0.0, 6.3)),
+            _ => tilted(cos(&mut random), random.range(0.0, 6.3)),
         };
         let found = (ggx(&s, V3::splat(l), V3::splat(v)) * splat(l.y)).lane(0);
         assert!(found.is_finite() && found.min_element() >= 0.0, "{found} l {l:?} v {v:?} {roughness:?}");
@@ -124,14 +107,14 @@ fn the_facets_cover_the_surface_once() {
 /// Light that a white surface sends to an eye at this cosine, all around being white: the integral
 /// of ggx cos / pi over the half space by the midpoint rule, in cosine and turn.
 fn furnace(s: &Surface, cos: f32) -> f64 {
-    let v = V3::splat(at(cos, 0.0));
+    let v = V3::splat(tilted(cos, 0.0));
     let (rings, turns) = (512, 512);
     let mut sum = 0.0;
     for i in 0..rings {
         let c = (i as f32 + 0.5) / rings as f32;
         for k in (0..turns).step_by(8) {
             let turn = |j: usize| (k as f32 + j as f32 + 0.5) * std::f32::consts::TAU / turns as f32;
-            let l = V3::from_fn(|j| at(c, turn(j)));
+            let l = V3::from_fn(|j| tilted(c, turn(j)));
             let light = (ggx(s, l, v).x * l.y).to_array();
             sum += light.iter().map(|&x| f64::from(x)).sum::<f64>();
         }
@@ -163,7 +146,7 @@ fn drawn_directions_find_what_the_integral_finds() {
     for roughness in [0.25, 0.5, 1.0] {
         for cos in [1.0, 0.6, 0.2] {
             let s = surface(roughness, Vec3::new(1.0, 0.3, 0.04));
-            let v = V3::splat(at(cos, 0.0));
+            let v = V3::splat(tilted(cos, 0.0));
             let around = |l: V3| V3::splat(Vec3::ONE) + V3::new(l.x, l.x, l.x);
             let (rings, turns) = (512, 512);
             let mut exact = glam::DVec3::ZERO;
@@ -173,7 +156,7 @@ fn drawn_directions_find_what_the_integral_finds() {
                 let c = 1.0 - x * x;
                 for k in (0..turns).step_by(8) {
                     let turn = |j: usize| (k as f32 + j as f32 + 0.5) * std::f32::consts::TAU / turns as f32;
-                    let l = V3::from_fn(|j| at(c, turn(j)));
+                    let l = V3::from_fn(|j| tilted(c, turn(j)));
                     let light = ggx(&s, l, v) * (l.y * splat(2.0 * x)) * around(l);
                     exact += (0..8).map(|j| light.lane(j).as_dvec3()).sum::<glam::DVec3>();
                 }
@@ -199,7 +182,7 @@ fn drawn_directions_are_unit_vectors_and_factors_at_most_1() {
         let roughness = if random.one_in(4) { 0.0 } else { random.size(-14, 0) };
         let cos = if random.one_in(8) { -0.01 } else { random.size(-40, 0) };
         let at = (splat(random.range(0.0, 1.0)), splat(random.range(0.0, 1.0)));
-        let (l, weight) = sample(&surface(roughness, Vec3::ONE), V3::splat(super::tests::at(cos, 1.0)), at);
+        let (l, weight) = sample(&surface(roughness, Vec3::ONE), V3::splat(tilted(cos, 1.0)), at);
         let (l, weight) = (l.lane(0), weight.lane(0));
         assert!((l.length() - 1.0).abs() < 1e-5, "case {case}: {l}");
         assert!(weight.min_element() >= 0.0 && weight.max_element() <= 1.00001, "case {case}: {weight}");
