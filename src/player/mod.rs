@@ -14,6 +14,8 @@ mod loader;
 mod snapshot;
 mod stage;
 mod text;
+#[cfg(feature = "sound")]
+mod wav;
 mod window;
 mod x11;
 
@@ -29,6 +31,8 @@ pub fn run(args: &[&OsStr]) -> i32 {
     let done = match args::parse(args) {
         Ok(Request::Help) => file::print(&args::help()),
         Ok(Request::Version) => file::print(concat!("luc ", env!("CARGO_PKG_VERSION"), "\n").as_bytes()),
+        #[cfg(feature = "sound")]
+        Ok(Request::Run(options)) if options.wav.is_some() => wav::write(&options),
         Ok(Request::Run(options)) => pool(&options).and_then(|()| match options.frame {
             Some(n) => snapshot::write(&options, n),
             None => window::play(&options),

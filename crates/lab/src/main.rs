@@ -3,8 +3,10 @@
 //! `cargo lab stats [FRAME] [QUALITY] [WxH]` prints the counters of one frame, its time, and the
 //! peak signal-to-noise ratio of its display values against the same quality with every pixel
 //! traced. `cargo lab lights` compares culled with naive small lights.
+//! `cargo lab sound [FILE.wav]...` measures the soundtrack.
 
 mod lights;
+mod sound;
 mod stats;
 mod swarm;
 
@@ -15,7 +17,8 @@ fn main() {
     let result = match args.first().map(String::as_str) {
         Some("stats") => stats::run(&args[1..]),
         Some("lights") => lights::run(),
-        _ => Err("usage: cargo lab stats [FRAME] [QUALITY] [WxH], or cargo lab lights".into()),
+        Some("sound") => sound::run(&args[1..]),
+        _ => Err("usage: cargo lab stats [FRAME] [QUALITY] [WxH], cargo lab lights, or cargo lab sound [FILE.wav]...".into()),
     };
     if let Err(message) = result {
         eprintln!("lab: {message}");
