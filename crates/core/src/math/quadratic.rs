@@ -10,7 +10,7 @@
 pub fn roots(a: f32, b: f32, c: f32) -> Option<[f32; 2]> {
     let [a, b, c] = [a, b, c].map(f64::from);
     let square = b * b - 4.0 * a * c;
-    if !(square >= 0.0 && square < f64::INFINITY) || a == 0.0 && b == 0.0 {
+    if !(0.0..f64::INFINITY).contains(&square) || (a == 0.0 && b == 0.0) {
         return None;
     }
     let q = -0.5 * (b + square.sqrt().copysign(b));
