@@ -5,13 +5,20 @@
 //! standard error and code 2. Text is put together from pieces instead of being formatted, because the
 //! formatting machinery alone would cost the packed file several kilobytes.
 
+#[cfg(all(feature = "sound", target_os = "linux"))]
+mod alsa;
 mod args;
 mod clock;
 mod file;
 mod fit;
+#[cfg(target_os = "linux")]
+mod library;
 mod live;
 mod loader;
+mod pace;
 mod snapshot;
+#[cfg(all(feature = "sound", target_os = "linux"))]
+mod sound;
 mod stage;
 mod text;
 #[cfg(feature = "sound")]
