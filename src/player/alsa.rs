@@ -6,9 +6,11 @@
 //! raw pointer keeps it there); buffers are given with their own lengths.
 
 use super::library::Library;
+use super::sound::perform;
+use super::stage::Stage;
 use luc_core::synth::RATE;
 use std::ffi::{CStr, c_char, c_int, c_long, c_uint, c_ulong, c_void};
-use std::ptr::null_mut;
+use std::ptr::{null, null_mut};
 
 type Pcm = *mut c_void;
 
@@ -27,6 +29,31 @@ pub struct Device {
 /// The library's own messages are not for standard error. It passes more arguments after these, which
 /// the caller puts away on the systems of this module.
 extern "C" fn quiet(_: *const c_char, _: c_int, _: *const c_char, _: c_int, _: *const c_char) {}
+
+unsafe extern "C" {
+    fn pthread_create(
+        thread: *mut c_ulong,
+        attributes: *const c_void,
+        start: extern "C" fn(*mut c_void) -> *mut c_void,
+        argument: *mut c_void,
+    ) -> c_int;
+}
+
+/// Calls [`perform`] on a thread of its own; false if the system refuses. The standard library's
+/// threads, with names, handles and destructors, would cost the packed file a kilobyte.
+pub fn start_thread(stage: &'static Stage) -> bool {
+    extern "C" fn start(stage: *mut c_void) -> *mut c_void {
+        // SAFETY: it is the stage below, which is shared between threads and lives for ever.
+        perform(unsafe { &*stage.cast::<Stage>() });
+        null_mut()
+    }
+    const { assert_shared::<Stage>() };
+    let (mut thread, stage) = (0, (&raw const *stage).cast_mut().cast());
+    // SAFETY: `start` is of the type that the C library wants and takes what it is given.
+    unsafe { pthread_create(&mut thread, null(), start, stage) == 0 }
+}
+
+const fn assert_shared<T: Sync>() {}
 
 impl Device {
     /// Opens the card that is the user's default; or says why there is none.

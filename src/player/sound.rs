@@ -1,7 +1,7 @@
 //! Live sound: one thread that renders ahead of the card and tells the picture's clock what has been
 //! heard.
 
-use super::alsa::Device;
+use super::alsa::{Device, start_thread};
 use super::complain;
 use super::stage::Stage;
 use super::text::join;
@@ -22,15 +22,17 @@ const AHEAD: u64 = RATE as u64;
 /// on by the monotonic clock.
 pub fn start(stage: &'static Stage) {
     stage.pace.set_silent(false);
-    let thread = std::thread::Builder::new().spawn(|| {
-        if let Err(reason) = play(stage) {
-            complain(&join(&[reason, b"; playing silent"]));
-        }
-        stage.pace.set_silent(true);
-    });
-    if thread.is_err() {
+    if !start_thread(stage) {
         stage.pace.set_silent(true);
     }
+}
+
+/// What the thread does.
+pub fn perform(stage: &Stage) {
+    if let Err(reason) = play(stage) {
+        complain(&join(&[reason, b"; playing silent"]));
+    }
+    stage.pace.set_silent(true);
 }
 
 /// Plays until the show is over.

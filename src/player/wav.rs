@@ -1,21 +1,17 @@
 //! The soundtrack as a file: one round of the loop, the same bytes on every machine.
 
 use super::args::Options;
-use super::file::Target;
-use super::text::Text;
 use luc::show;
 use luc_core::synth::stream::Stream;
 use luc_core::synth::{RATE, pcm};
-use std::ffi::OsStr;
 
 /// Bytes of a sample of both channels.
 const FRAME: u32 = 4;
 /// Samples rendered at once.
 const BLOCK: usize = 1024;
 
-/// Renders what the options say and writes it.
-pub fn write(options: &Options) -> Result<(), Text> {
-    let target = Target::find(options.wav.unwrap_or(OsStr::new("-")))?;
+/// Renders what the options say as a file.
+pub fn bytes(options: &Options) -> Vec<u8> {
     let tune = show::tune(options.scene.map_or(0..show::PARTS.len(), |part| part..part + 1));
     let samples = tune.samples();
     let mut bytes = header(samples).to_vec();
@@ -30,7 +26,7 @@ pub fn write(options: &Options) -> Result<(), Text> {
         }
         left -= block.len();
     }
-    target.write(&bytes)
+    bytes
 }
 
 /// The 44 bytes before `samples` samples of 16 bits, two channels (RIFF, "Multimedia Programming

@@ -141,7 +141,7 @@ impl Delays<'_> {
             let v = self.read(BEFORE + side);
             self.write(BEFORE + side, bus[2 + side] + DELAY_IN_REVERB * echo);
             // High-pass at 180 Hz.
-            let mut v = v - self.pole(LOW + side, 0.025_320, v);
+            let mut v = v - self.pole(LOW + side, 0.025_320, v) + BIAS;
             for k in 0..2 {
                 let line = ALL_PASS + 2 * side + k;
                 let end = self.read(line);
@@ -151,7 +151,7 @@ impl Delays<'_> {
             }
             for k in 0..4 {
                 let k = 2 * k + side;
-                self.write(LINE + k, y[k] * (0.5 * core::f32::consts::FRAC_1_SQRT_2) + v * 0.5 + BIAS);
+                self.write(LINE + k, y[k] * (0.5 * core::f32::consts::FRAC_1_SQRT_2) + v * 0.5);
             }
 
             let v = bus[side] + BIAS + DELAY * echo + REVERB * reverb[side];

@@ -1,9 +1,13 @@
 //! An instrument: one row of numbers for the one voice that plays them all.
 
-/// A row of the table of instruments: each number as the upper half of an f32 (8 bits of precision,
-/// an error of at most 0.2 %), which packs in a third of the bytes.
+/// A row of the table of instruments: each number, 0 or from 2⁻¹² to below 2²⁰, as the five low bits of its
+/// exponent and the three high bits of its fraction, so with an error of at most 6 %.
 #[derive(Clone, Copy, Debug)]
-pub struct Instrument([u16; COLUMNS]);
+pub struct Instrument([u8; COLUMNS]);
+
+/// What the exponent of an f32 has besides the five bits, and what is below the three.
+const EXPONENT: u32 = (127 - 12) << 23;
+const FRACTION: u32 = 20;
 
 /// Numbers of an instrument.
 pub const COLUMNS: usize = 28;
@@ -38,7 +42,7 @@ pub const DECAY: usize = 12;
 pub const SUSTAIN: usize = 13;
 /// Seconds in which the level falls to 1/e after the note.
 pub const RELEASE: usize = 14;
-/// What passes the filter: 1 low, 0 a band, -1 high.
+/// What passes the filter: 0 low, 1 a band, 2 high.
 pub const PASS: usize = 15;
 /// Cutoff frequency, Hz.
 pub const CUTOFF: usize = 16;
@@ -52,7 +56,7 @@ pub const SWEEP_RISE: usize = 19;
 pub const SWEEP_FALL: usize = 20;
 /// Depth of the vibrato, cents.
 pub const VIBRATO: usize = 21;
-/// Place between left, -1, and right, 1.
+/// Place between left, 0, and right, 2.
 pub const PAN: usize = 22;
 /// Level.
 pub const LEVEL: usize = 23;
@@ -68,17 +72,22 @@ pub const OFFBEAT: usize = 27;
 impl Instrument {
     /// From its numbers, in the order of the columns above.
     pub const fn new(numbers: [f32; COLUMNS]) -> Self {
-        let mut halves = [0; COLUMNS];
+        let mut bytes = [0; COLUMNS];
         let mut i = 0;
         while i < COLUMNS {
-            halves[i] = ((numbers[i].to_bits() + 0x8000) >> 16) as u16;
+            if numbers[i] > 0.0 {
+                let rounded = numbers[i].to_bits() + (1 << (FRACTION - 1)) - EXPONENT;
+                assert!(rounded >> FRACTION < 256, "a number outside the table's range");
+                bytes[i] = (rounded >> FRACTION) as u8;
+            }
             i += 1;
         }
-        Instrument(halves)
+        Instrument(bytes)
     }
 
     /// The number of a column.
     pub fn get(&self, column: usize) -> f32 {
-        f32::from_bits(u32::from(self.0[column]) << 16)
+        let byte = u32::from(self.0[column]);
+        if byte == 0 { 0.0 } else { f32::from_bits((byte << FRACTION) + EXPONENT) }
     }
 }

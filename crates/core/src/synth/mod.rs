@@ -3,8 +3,8 @@
 //! How sound flows, in the order of the modules: a [`score`] of sections, rows and patterns is read
 //! sixteenth by sixteenth into notes; an [`instrument`] is a row of 28 numbers; every copy of an
 //! oscillator is a lane of a packet of [`voice`]s; their sums go through the [`effects`]; a
-//! [`stream`] does all of it from any sample on, in blocks of any size. [`meter`]
-//! measures what came out.
+//! [`stream`] does all of it from any sample on, in blocks of any size. [`track`] tells pictures
+//! when an instrument strikes, [`meter`] measures what came out.
 //!
 //! A sample is made of the operations that pixels are made of (see [`math`](crate::math)), in f32
 //! and in a fixed order: nothing depends on how the stream is cut into blocks.
@@ -14,6 +14,7 @@ pub mod instrument;
 pub mod meter;
 pub mod score;
 pub mod stream;
+pub mod track;
 pub mod voice;
 
 /// Samples a second, of each of the two channels.

@@ -8,7 +8,6 @@
 use super::instrument::{Instrument, OFFBEAT, PAN};
 use super::voice::Note;
 use super::{STEPS, sample_of};
-use crate::math::hash::hash2;
 
 /// A tune's tables that all its sections share.
 #[derive(Debug)]
@@ -154,11 +153,6 @@ impl Row {
     pub const fn at(self, pan: i8) -> Self {
         Row { pan, ..self }
     }
-
-    /// Its length in sixteenths.
-    fn steps(&self) -> u32 {
-        u32::from(self.bars) * STEPS
-    }
 }
 
 /// `[a, b]` at a share of the way.
@@ -166,45 +160,23 @@ fn between([a, b]: [u8; 2], share: f32) -> f32 {
     f32::from(a) + (f32::from(b) - f32::from(a)) * share
 }
 
-/// A place where a row starts notes.
-struct Strike {
-    /// Sixteenths since the row's start.
-    local: u32,
-    /// What the digit means.
-    mode: u8,
-    digit: i32,
-    level: f32,
-    /// Sixteenths that the pattern holds it.
-    steps: u32,
-}
-
 impl Score {
-    /// What a row starts at a step of its section.
-    #[inline(never)]
-    fn strike(&self, row: &Row, step: u32) -> Option<Strike> {
-        let local = step.wrapping_sub(u32::from(row.bar) * STEPS);
-        let all = row.steps();
-        if local >= all {
-            return None;
+    /// What a pattern's digits mean, and its characters.
+    pub(super) const fn pattern(&self, index: u8) -> (u8, &'static [u8]) {
+        let mut rest = self.patterns.as_bytes();
+        let mut line = 0;
+        loop {
+            let mut end = 0;
+            while rest[end] != b'\n' {
+                end += 1;
+            }
+            let (this, after) = rest.split_at(end);
+            if line == index {
+                return (this[0], this.split_at(1).1);
+            }
+            rest = after.split_at(1).1;
+            line += 1;
         }
-        let line = self.patterns.as_bytes().split(|&c| c == b'\n').nth(row.pattern.into())?;
-        let (&mode, text) = line.split_first()?;
-        let at = |local: u32| text[local as usize % text.len()];
-        let c = at(local);
-        // The marks `-` and `.` lie below the digits, letters above.
-        if c < b'0' {
-            return None;
-        }
-        let digit = i32::from(c) - if c > b'9' { 87 } else { 48 };
-        let mut level = 0.01 * between(row.level, local as f32 / all as f32);
-        if mode == b'd' {
-            level *= digit as f32 / 9.0;
-        }
-        let mut steps = 1;
-        while local + steps < all && at(local + steps) == b'-' {
-            steps += 1;
-        }
-        Some(Strike { local, mode, digit, level, steps })
     }
 
     /// Hands the notes that begin at a step of a section to `play`, with the instrument's index.
@@ -213,20 +185,38 @@ impl Score {
         let bar = (step / STEPS) as usize;
         let chord = &section.harmony[bar];
         for (index, row) in section.rows.iter().enumerate() {
-            let Some(Strike { local, mode, digit, mut level, mut steps }) = self.strike(row, step) else {
+            let local = step.wrapping_sub(row.bar as u32 * STEPS);
+            let all = row.bars as u32 * STEPS;
+            if local >= all {
                 continue;
-            };
-            let instrument = &self.instruments[usize::from(row.instrument)];
-            if !local.is_multiple_of(4) {
-                level *= instrument.get(OFFBEAT);
             }
-            let mut share = local as f32 / row.steps() as f32;
-            let mut pan = if row.pan == Row::OWN { instrument.get(PAN) } else { 0.01 * f32::from(row.pan) };
+            let (mode, text) = self.pattern(row.pattern);
+            let at = |local: u32| text[local as usize % text.len()];
+            let c = at(local);
+            // The marks `-` and `.` lie below the digits, letters above.
+            if c < b'0' {
+                continue;
+            }
+            let digit = i32::from(c) - if c > b'9' { 87 } else { 48 };
+            let instrument = &self.instruments[usize::from(row.instrument)];
+            let mut pan =
+                if row.pan == Row::OWN { instrument.get(PAN) - 1.0 } else { 0.01 * f32::from(row.pan) };
+            let mut share = local as f32 / all as f32;
             let mut voices = 1;
             if mode == b'p' {
                 voices = HELD.len();
                 share += 0.5 / f32::from(row.bars);
-                level = 0.01 * between(row.level, share);
+            }
+            let mut level = 0.01 * between(row.level, share);
+            if mode == b'd' {
+                level *= digit as f32 / 9.0;
+            }
+            if !local.is_multiple_of(4) {
+                level *= instrument.get(OFFBEAT);
+            }
+            let mut steps = 1;
+            while local + steps < all && at(local + steps) == b'-' {
+                steps += 1;
             }
             for (voice, place) in PLACES.into_iter().enumerate().take(voices) {
                 let pitch = match mode {
@@ -264,17 +254,13 @@ impl Score {
                     pan,
                     reverb: 0.01 * f32::from(section.reverb),
                     delay: 0.01 * f32::from(section.delay),
-                    seed: hash2((index * HELD.len() + voice) as u32, step),
+                    seed: ((index * HELD.len() + voice) as u32)
+                        .wrapping_mul(0x85eb_ca6b)
+                        .wrapping_add(step.wrapping_mul(0xc2b2_ae35)),
                 };
                 play(row.instrument, &note);
             }
         }
-    }
-
-    /// Level of the strike of an instrument at a step of a section, if there is one.
-    pub fn hit(&self, section: &Section, instrument: u8, step: u32) -> Option<f32> {
-        let mut rows = section.rows.iter().filter(|row| row.instrument == instrument);
-        rows.find_map(|row| self.strike(row, step)).map(|strike| strike.level)
     }
 }
 

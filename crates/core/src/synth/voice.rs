@@ -181,6 +181,7 @@ impl Packet {
         c[ATTACK] = ONE / max(c[ATTACK] * RATE_F, ONE);
         c[RESONANCE] = ONE / c[RESONANCE];
         c[SWEEP_RISE] *= RATE_F;
+        c[PASS] = ONE - c[PASS];
         let taken = RAMP.simd_lt(splat(self.used as f32));
         c[LEFT] &= taken;
         c[RIGHT] &= taken;
@@ -255,7 +256,7 @@ impl Packet {
             let v2 = i2 + self.filter[1] * i1 + self.filter[2] * v3;
             // Between the edges of a pulse the first one falls to 0.
             self.integrators = [v1 + v1 - i1 + LEAST, v2 + v2 - i2];
-            // Low is v2, band v1, high the rest.
+            // By now 1 is low, which is v2, 0 a band, which is v1, and -1 high, the rest.
             let high = max(-c[PASS], ZERO);
             let passed = c[PASS] * v2 + (ONE - c[PASS].abs()) * v1 + high * (v0 - c[RESONANCE] * v1);
 

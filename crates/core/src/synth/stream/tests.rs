@@ -17,7 +17,7 @@ const INSTRUMENTS: [Instrument; 3] = {
     kick[ATTACK] = 0.001;
     kick[DECAY] = 0.16;
     kick[RELEASE] = 0.16;
-    kick[PASS] = 1.0;
+    kick[PAN] = 1.0;
     kick[CUTOFF] = 6000.0;
     kick[RESONANCE] = 0.7;
     kick[SWEEP_FALL] = 0.1;
@@ -29,7 +29,7 @@ const INSTRUMENTS: [Instrument; 3] = {
     noise[COPIES] = 2.0;
     noise[SPREAD] = 1.0;
     noise[NOISE] = 1.0;
-    noise[PASS] = -1.0;
+    noise[PASS] = 2.0;
     let mut saws = kick;
     saws[WAVE] = 2.0;
     saws[COPIES] = 7.0;
@@ -44,7 +44,7 @@ const INSTRUMENTS: [Instrument; 3] = {
 };
 
 static SCORE: Score =
-    Score { instruments: &INSTRUMENTS, patterns: "d9...............\np0---------------\nk0...4-----7---9" };
+    Score { instruments: &INSTRUMENTS, patterns: "d9...............\np0---------------\nk0...4-----7---9\n" };
 
 const CHORD: Chord = Chord::new(0, b't', b'A');
 const fn row(instrument: u8, pattern: u8, bar: u8, bars: u8) -> Row {
