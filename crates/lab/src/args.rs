@@ -16,6 +16,18 @@ pub fn preset(text: &str) -> Result<luc_core::quality::Quality, String> {
         .ok_or_else(|| format!("a quality is one of {}, not '{text}'", names()))
 }
 
+/// A whole number from 1 on.
+pub fn count(text: &str) -> Result<u32, String> {
+    text.parse().ok().filter(|n| *n >= 1).ok_or_else(|| format!("a whole number from 1 on, not '{text}'"))
+}
+
+/// The index of a part of the show by its name.
+pub fn part(text: &str) -> Result<usize, String> {
+    let names = || luc::show::PARTS.iter().map(|p| p.name).collect::<Vec<_>>().join(", ");
+    let found = luc::show::PARTS.iter().position(|p| p.name == text);
+    found.ok_or_else(|| format!("a part is one of {}, not '{text}'", names()))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -6,13 +6,16 @@
 
 mod accuracy;
 mod args;
+mod capture;
 mod figures;
+mod font;
 mod lights;
 mod metric;
 mod plot;
 mod png_file;
 mod progress;
 mod scale;
+mod sheet;
 mod stats;
 mod subject;
 mod swarm;
@@ -22,13 +25,15 @@ use std::process::exit;
 /// A command: its name, what follows it, what it does, and the function.
 type Command = (&'static str, &'static str, &'static str, fn(&[String]) -> Result<(), String>);
 
-const COMMANDS: [Command; 3] = [
+const COMMANDS: [Command; 5] = [
     (
         "accuracy",
         "[--quick]",
         "what accuracy costs in time, as CSV, plots and a page in docs/accuracy",
         accuracy::run,
     ),
+    ("sheet", "[--part NAME]", "contact sheets in target/sheets", sheet::run),
+    ("capture", "[-o FILE] [--shard I/N]", "frames as y4m, to a file or standard output", capture::run),
     ("stats", "[FRAME] [QUALITY] [WxH]", "counters, time and error of one frame", stats::run),
     ("lights", "", "culled against naive small lights", lights::run),
 ];
