@@ -105,8 +105,8 @@ fn cuts(subjects: &[Subject], i: usize) -> Vec<Shot> {
     for cut in std::iter::once(0).chain(jumps(&cameras)) {
         for k in 0..=2 * BEFORE {
             let Some(n) = (cut + NEAR * k).checked_sub(NEAR * BEFORE) else {
-                // Before the part's first frame the part before it plays, if it is not the first.
-                let Some(before) = i.checked_sub(1).map(|i| subjects[i]) else { continue };
+                // Before the first frame of a part the one before it plays; the show is a loop.
+                let before = subjects[(i + subjects.len() - 1) % subjects.len()];
                 let n = before.frames + cut + NEAR * k - NEAR * BEFORE;
                 shots.push((before, n, format!("{} {n}", before.name)));
                 continue;
