@@ -23,6 +23,13 @@ pub fn mean(numbers: &[f64]) -> f64 {
     numbers.iter().sum::<f64>() / numbers.len() as f64
 }
 
+/// Standard deviation of a sample; 0 for one number.
+pub fn deviation(numbers: &[f64]) -> f64 {
+    let mean = mean(numbers);
+    let squares: f64 = numbers.iter().map(|x| (x - mean) * (x - mean)).sum();
+    (squares / (numbers.len().max(2) - 1) as f64).sqrt()
+}
+
 /// Exponent b of the power law y = a x^b through points, and a: a straight line through logarithms.
 pub fn power_law(points: &[(f64, f64)]) -> (f64, f64) {
     let logs: Vec<(f64, f64)> = points.iter().map(|(x, y)| (x.ln(), y.ln())).collect();
@@ -45,6 +52,12 @@ mod tests {
         assert_eq!(quantile(&numbers, 1.0), 4.0);
         assert_eq!(quantile(&[7.0], 0.3), 7.0);
         assert!(quantile(&[], 0.5).is_nan());
+    }
+
+    #[test]
+    fn deviation_is_that_of_a_sample() {
+        assert_eq!(deviation(&[5.0]), 0.0);
+        assert!((deviation(&[1.0, 2.0, 3.0, 4.0]) - (5.0_f64 / 3.0).sqrt()).abs() < 1e-12);
     }
 
     #[test]

@@ -6,6 +6,7 @@
 
 mod accuracy;
 mod args;
+mod bench;
 mod capture;
 mod figures;
 mod font;
@@ -25,12 +26,18 @@ use std::process::exit;
 /// A command: its name, what follows it, what it does, and the function.
 type Command = (&'static str, &'static str, &'static str, fn(&[String]) -> Result<(), String>);
 
-const COMMANDS: [Command; 5] = [
+const COMMANDS: [Command; 6] = [
     (
         "accuracy",
         "[--quick]",
         "what accuracy costs in time, as CSV, plots and a page in docs/accuracy",
         accuracy::run,
+    ),
+    (
+        "bench",
+        "[--compare OLD.json] [--callgrind]",
+        "frame times along every part, by preset and by phase",
+        bench::run,
     ),
     ("sheet", "[--part NAME]", "contact sheets in target/sheets", sheet::run),
     ("capture", "[-o FILE] [--shard I/N]", "frames as y4m, to a file or standard output", capture::run),
@@ -50,6 +57,8 @@ fn main() {
     let name = args.first().map_or("", String::as_str);
     let result = match COMMANDS.iter().find(|command| command.0 == name) {
         Some((.., run)) => run(&args[1..]),
+        // What the bench runs under valgrind.
+        None if name == "kernel" => bench::kernels::run(&args[1..]),
         None if ["help", "--help", "-h"].contains(&name) => {
             print!("{}", help());
             Ok(())

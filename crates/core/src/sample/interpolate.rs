@@ -15,6 +15,7 @@ use crate::quality::Rung;
 use crate::render::Stage;
 use crate::scene::Channel;
 use crate::shade::{self, Visibility};
+use crate::study::Phase;
 use crate::trace::{NONE, Rays8, surface};
 use glam::Vec3;
 
@@ -52,6 +53,7 @@ pub(super) fn fill(
     tile: &mut Tile,
     counters: &mut Counters,
 ) {
+    counters.watch.enter(Phase::Filling);
     let first = known.samples[0];
     let equal = known.agree_within(SAME);
     let kind = if equal { Kind::Filled } else { Kind::Interpolated };
@@ -117,6 +119,7 @@ pub(super) fn fill(
             }
         }
     }
+    counters.watch.enter(Phase::Sampling);
 }
 
 /// Depths between the corners: over a plane, one over the depth is linear on the screen.

@@ -10,6 +10,11 @@ pub struct Axis {
 }
 
 impl Axis {
+    /// An axis of equal differences.
+    pub fn linear(label: &str) -> Self {
+        Self { label: label.into(), log: false }
+    }
+
     /// An axis of equal factors.
     pub fn log(label: &str) -> Self {
         Self { label: label.into(), log: true }
@@ -103,8 +108,8 @@ mod tests {
             (Axis::log("a"), vec![0.003, 0.4, 70.0]),
             (Axis::log("b"), vec![5.0]),
             (Axis::log("c"), vec![5.0, 5.5]),
-            (Axis { label: "d".into(), log: false }, vec![-3.0, 0.0, 12.5]),
-            (Axis { label: "e".into(), log: false }, vec![1e-5, 2e-5]),
+            (Axis::linear("d"), vec![-3.0, 0.0, 12.5]),
+            (Axis::linear("e"), vec![1e-5, 2e-5]),
         ] {
             let scale = axis.scale(values.iter().copied());
             assert!(values.iter().all(|v| (0.0..=1.0).contains(&scale.place(*v))), "{axis:?}");
