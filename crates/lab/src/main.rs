@@ -20,13 +20,14 @@ mod sheet;
 mod stats;
 mod subject;
 mod swarm;
+mod view;
 
 use std::process::exit;
 
 /// A command: its name, what follows it, what it does, and the function.
 type Command = (&'static str, &'static str, &'static str, fn(&[String]) -> Result<(), String>);
 
-const COMMANDS: [Command; 6] = [
+const COMMANDS: [Command; 7] = [
     (
         "accuracy",
         "[--quick]",
@@ -39,6 +40,7 @@ const COMMANDS: [Command; 6] = [
         "frame times along every part, by preset and by phase",
         bench::run,
     ),
+    ("view", "[--part NAME] [--from N]", "the show in a window with the keys of an editor", view::run),
     ("sheet", "[--part NAME]", "contact sheets in target/sheets", sheet::run),
     ("capture", "[-o FILE] [--shard I/N]", "frames as y4m, to a file or standard output", capture::run),
     ("stats", "[FRAME] [QUALITY] [WxH]", "counters, time and error of one frame", stats::run),

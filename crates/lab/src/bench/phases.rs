@@ -1,10 +1,11 @@
 //! What a frame's time goes to: sampling, tracing, shading, filling, bloom, output, and the rest; and
 //! how much of it threads share.
 //!
-//! Phases are told on one thread, where all time is somebody's. What several threads lose is what
-//! they take together beyond that: waiting, waking, and getting in each other's way.
+//! Phases are told on one thread, where all time is somebody's, and scaled from the wall clock's to the
+//! processor's time, since what disturbs a frame disturbs all its phases alike. What several threads
+//! lose is what they take together beyond that: waiting, waking, and getting in each other's way.
 
-use crate::figures::mean;
+use crate::figures::{mean, processor_ms};
 use crate::subject::Subject;
 use luc_core::quality::Quality;
 use luc_core::render::Renderer;
@@ -20,9 +21,11 @@ pub struct Phases {
     pub part: String,
     /// On one thread, in the order of [`Phase::ALL`].
     pub spent: Vec<f64>,
-    /// A whole frame on one thread; more than the sum of the phases by what belongs to none.
+    /// A whole frame on one thread, processor time; more than the phases by what belongs to none.
+    pub processor: f64,
+    /// A whole frame on one thread by the wall clock.
     pub one: f64,
-    /// A whole frame on all threads.
+    /// A whole frame on all threads by the wall clock.
     pub all: f64,
 }
 
@@ -44,24 +47,32 @@ pub fn measure(subject: &Subject, size: (u32, u32), count: u64, threads: usize) 
     let mut pixels = vec![0; size.0 as usize * size.1 as usize];
     let mut renderer = Renderer::default();
     let mut spent = vec![Vec::new(); Phase::ALL.len()];
-    let (mut one, mut all) = (Vec::new(), Vec::new());
+    let (mut processor, mut one, mut all) = (Vec::new(), Vec::new(), Vec::new());
     for n in subject.spread(count) {
         let scene = (subject.scene)(n);
         let mut time = |pool: &rayon::ThreadPool, quality| {
-            let begin = Instant::now();
+            let (begin, processor) = (Instant::now(), processor_ms());
             pool.install(|| renderer.frame(&scene, n, size, quality, &mut pixels));
-            begin.elapsed().as_secs_f64() * 1e3
+            (begin.elapsed().as_secs_f64() * 1e3, processor_ms() - processor)
         };
         time(&alone, &plain);
-        one.push(time(&alone, &plain));
-        all.push(time(&together, &plain));
-        time(&alone, &timed);
+        let alone_ms = time(&alone, &plain);
+        one.push(alone_ms.0);
+        processor.push(alone_ms.1);
+        all.push(time(&together, &plain).0);
+        let (wall, own) = time(&alone, &timed);
         for (list, (phase, _)) in spent.iter_mut().zip(Phase::ALL) {
-            list.push(renderer.counters.watch.spent(phase) as f64 / 1e6);
+            list.push(renderer.counters.watch.spent(phase) as f64 / 1e6 * own / wall);
         }
     }
     let spent = spent.iter().map(|list| mean(list)).collect();
-    Ok(Phases { part: subject.name.into(), spent, one: mean(&one), all: mean(&all) })
+    Ok(Phases {
+        part: subject.name.into(),
+        spent,
+        processor: mean(&processor),
+        one: mean(&one),
+        all: mean(&all),
+    })
 }
 
 #[cfg(test)]

@@ -75,7 +75,7 @@ impl Report {
                 .zip(&p.spent)
                 .map(|((_, name), ms)| (name.to_string(), json!(ms)))
                 .collect();
-            json!({ "part": p.part, "one_thread_ms": p.one, "all_threads_ms": p.all, "phases_ms": spent })
+            json!({ "part": p.part, "processor_ms": p.processor, "one_thread_ms": p.one, "all_threads_ms": p.all, "phases_ms": spent })
         };
         json!({
             "width": self.size.0, "height": self.size.1, "threads": self.threads,
@@ -155,20 +155,23 @@ impl Report {
         }
         let names: Vec<&str> = Phase::ALL.iter().map(|p| p.1).collect();
         t += &format!(
-            "\nWhere the time goes at the default preset, ms on one thread; idle is of {} threads\n\n",
+            "\nWhere the time goes at the default preset, ms of processor time on one thread; idle is of {} threads\n\n",
             self.threads
         );
-        t +=
-            &format!("| part | {} | rest | one thread | all threads | ratio | idle % |\n", names.join(" | "));
-        t += &format!("|---|{}---:|---:|---:|---:|---:|\n", "---:|".repeat(names.len()));
+        t += &format!(
+            "| part | {} | rest | processor | one thread | all threads | ratio | idle % |\n",
+            names.join(" | ")
+        );
+        t += &format!("|---|{}---:|---:|---:|---:|---:|---:|\n", "---:|".repeat(names.len()));
         for p in &self.phases {
             let cells: Vec<String> = p.spent.iter().map(|v| format!("{v:.1}")).collect();
-            let rest = (p.one - p.spent.iter().sum::<f64>()).max(0.0);
+            let rest = (p.processor - p.spent.iter().sum::<f64>()).max(0.0);
             let idle = (100.0 * (1.0 - p.one / (p.all * self.threads as f64))).max(0.0);
             t += &format!(
-                "| {} | {} | {rest:.1} | {:.1} | {:.1} | {:.2} | {idle:.0} |\n",
+                "| {} | {} | {rest:.1} | {:.1} | {:.1} | {:.1} | {:.2} | {idle:.0} |\n",
                 p.part,
                 cells.join(" | "),
+                p.processor,
                 p.one,
                 p.all,
                 p.one / p.all
@@ -228,6 +231,7 @@ mod tests {
             phases: vec![Phases {
                 part: "mirror".into(),
                 spent: vec![1.0; Phase::ALL.len()],
+                processor: 6.5,
                 one: 7.0,
                 all: 4.0,
             }],
@@ -260,6 +264,6 @@ mod tests {
     fn idle_is_what_threads_lose() {
         // Two threads for 4 ms do 7 ms of work: an eighth is lost.
         let text = report(1.0).text();
-        assert!(text.contains("| 1.0 | 7.0 | 4.0 | 1.75 | 12 |"), "{text}");
+        assert!(text.contains("| 0.5 | 6.5 | 7.0 | 4.0 | 1.75 | 12 |"), "{text}");
     }
 }
