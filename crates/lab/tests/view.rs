@@ -21,11 +21,11 @@ fn require(tools: &[&str]) {
     assert!(tools.iter().all(|tool| found(&tool)), "install xvfb xdotool x11-apps");
 }
 
-/// Presses keys, one after another.
-fn press(screen: &Screen, player: &Player, keys: &[&str]) {
+/// Presses a key.
+fn press(screen: &Screen, key: &str) {
     // Without a window manager the keyboard belongs to the window under the pointer.
-    player.window("mousemove", &["5", "5"]);
-    screen.xdotool(&[&["key", "--delay", "30"], keys].concat());
+    let window = ["search", "--onlyvisible", "--name", "^L", "mousemove", "--window", "%1", "5", "5"];
+    screen.xdotool(&[&window[..], &["key", key]].concat());
 }
 
 /// Looks until the window shows something else than `before`.
@@ -65,11 +65,11 @@ fn keys_change_the_picture_and_escape_ends_it() {
         ("f", "nothing"),
         ("w", "the free camera"),
     ] {
-        press(&screen, &player, &[key]);
+        press(&screen, key);
         if what != "nothing" {
             seen = changed(&player, &seen, what);
         }
     }
-    press(&screen, &player, &["Escape"]);
+    press(&screen, "Escape");
     player.ends("Esc");
 }

@@ -114,7 +114,9 @@ impl Drawer {
         text += &format!("\n{:.1} ms  present {:.1} ms", self.frame_ms, self.present_ms);
         let share = |counter| 100.0 * self.counters.get(counter) as f64 / picture.pixels.len() as f64;
         let [traced, between, filled] = [Counter::Traced, Counter::Interpolated, Counter::Filled].map(share);
-        text += &format!("\ntraced {traced:.1} %  between {between:.1} %  filled {filled:.1} %");
+        if traced + between + filled > 0.0 {
+            text += &format!("\ntraced {traced:.1} %  between {between:.1} %  filled {filled:.1} %");
+        }
         for (counter, name) in SHOWN {
             let count = self.counters.get(counter);
             if count > 0 {
