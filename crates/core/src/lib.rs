@@ -47,5 +47,6 @@ pub mod render;
 pub mod sample;
 pub mod scene;
 pub mod shade;
+pub mod study;
 pub mod synth;
 pub mod trace;
