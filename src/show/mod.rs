@@ -4,6 +4,7 @@
 //! pure function of its local frame, so any frame can be rendered on its own and nothing drifts.
 
 mod blobs;
+mod end;
 mod facets;
 mod gold;
 mod luc;
@@ -11,6 +12,7 @@ mod mirror;
 mod paint;
 pub mod score;
 mod still;
+mod text;
 
 use luc_core::quality::Quality;
 use luc_core::render::Renderer;
@@ -56,6 +58,7 @@ pub const PARTS: &[Part] = &[
     part("gold", &score::GOLD, gold::scene),
     part("facets", &score::FACETS, facets::scene),
     part("blobs", &score::BLOBS, blobs::scene),
+    part("end", &score::END, end::scene),
 ];
 
 /// Length of the whole show in frames; frame n is frame n mod this.
