@@ -41,7 +41,7 @@ pub struct Chord {
     pub key: i8,
     /// The root, a degree.
     pub root: i8,
-    /// Which of the kinds `t79s5x`: see [`KINDS`].
+    /// Which of the kinds `t79s5x`: triad, seventh, ninth, fourths, no third, no fifth.
     pub kind: u8,
     /// Which of the scales `AHRP`: natural minor, harmonic minor, Dorian, Phrygian.
     pub scale: u8,
