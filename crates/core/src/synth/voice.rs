@@ -10,7 +10,7 @@
 //!   difference of two saws.
 //! - Filter: state-variable, trapezoidal (Simper 2013), with tan x ≈ x(15 - x²)/(15 - 6x²).
 //!
-//! Pitch, modulation and filter change every [`CONTROL`] samples, counted from the note's start; the
+//! Pitch, modulation and filter change every 32 samples, counted from the note's start; the
 //! envelope every sample.
 
 use super::RATE;
