@@ -18,36 +18,40 @@ pub fn new_model() -> Box<Model> {
     }
 }
 
-/// Context mixing: what [`crate::codec::cm::decode`] decodes, and what each byte cost, bits.
+/// Context mixing: what [`crate::codec::cm::decode`] decodes, into `encoder`, with `lesson` in
+/// memory before. What each byte cost, bits.
 #[allow(clippy::disallowed_methods, reason = "costs are for reports, whose last digit doesn't matter")]
-pub fn cm(bytes: &[u8]) -> (Vec<u8>, Vec<f32>) {
+pub fn cm(encoder: &mut Encoder, lesson: &[u8], bytes: &[u8]) -> Vec<f32> {
     let mut model = new_model();
-    let mut encoder = Encoder::new();
-    let mut costs = vec![0.0; bytes.len()];
     model.start();
-    for (position, &byte) in bytes.iter().enumerate() {
-        for bit in bits(byte) {
-            let one = model.predict();
-            encoder.bit(bit, one);
-            model.learn(bit);
-            let probability = if bit == 1 { one } else { 65536 - one };
-            costs[position] -= (probability as f32 / 65536.0).log2();
-        }
-        model.end_byte(&bytes[..position + 1]);
+    for &byte in lesson {
+        let mut bits = bits(byte);
+        model.byte(|_| bits.next().unwrap_or(0));
     }
-    (encoder.finish(), costs)
+    let mut costs = vec![0.0; bytes.len()];
+    for (&byte, cost) in bytes.iter().zip(&mut costs) {
+        let mut bits = bits(byte);
+        model.byte(|one| {
+            let bit = bits.next().unwrap_or(0);
+            encoder.bit(bit, one);
+            let probability = if bit == 1 { one } else { 65536 - one };
+            *cost -= (probability as f32 / 65536.0).log2();
+            bit
+        });
+    }
+    costs
 }
 
-/// The small coder: what [`small::decode`] decodes.
-pub fn small(bytes: &[u8]) -> Vec<u8> {
+/// The small coder: what [`small::decode`] decodes, into `encoder`.
+pub fn small(encoder: &mut Encoder, bytes: &[u8]) {
     let mut cells = new_cells();
-    let mut model = small::Model::new(&mut cells);
-    let mut encoder = Encoder::new();
-    for bit in bytes.iter().flat_map(|&byte| bits(byte)) {
-        encoder.bit(bit, model.predict());
-        model.learn(bit);
-    }
-    encoder.finish()
+    let mut bits = bytes.iter().flat_map(|&byte| bits(byte));
+    let mut output = vec![0; bytes.len()];
+    small::decode(&mut cells, &mut output, |one| {
+        let bit = bits.next().unwrap_or(0);
+        encoder.bit(bit, one);
+        bit
+    });
 }
 
 /// Memory for the small coder.
@@ -62,18 +66,19 @@ fn bits(byte: u8) -> impl Iterator<Item = u32> {
 }
 
 /// Writes bits for [`crate::codec::interval::Decoder`].
-struct Encoder {
+pub struct Encoder {
     interval: Interval,
     packed: Vec<u8>,
 }
 
 impl Encoder {
-    fn new() -> Encoder {
+    /// With nothing coded yet.
+    pub fn new() -> Encoder {
         Encoder { interval: Interval::WHOLE, packed: Vec::new() }
     }
 
     /// A bit that is a one with the probability `one`, in 16 bits.
-    fn bit(&mut self, bit: u32, one: u32) {
+    pub fn bit(&mut self, bit: u32, one: u32) {
         self.interval.narrow(self.interval.split(one), bit);
         let mut top = (self.interval.high >> 24) as u8;
         while self.interval.settled() {
@@ -82,13 +87,30 @@ impl Encoder {
         }
     }
 
+    /// Bytes so far.
+    pub fn length(&self) -> usize {
+        self.packed.len()
+    }
+
     /// The code, ended by the fewest bytes that lie in the interval when zeros follow.
-    fn finish(mut self) -> Vec<u8> {
+    pub fn finish(mut self) -> Vec<u8> {
         let Interval { low, high } = self.interval;
         let kept = |count: u32| if count == 0 { 0 } else { high & !0 << (32 - 8 * count) };
         let count = (0..4).find(|&count| kept(count) >= low).unwrap_or(4);
         self.packed.extend(&high.to_be_bytes()[..count as usize]);
         self.packed
+    }
+
+    /// The code, ended in full so that other data may follow.
+    pub fn finish_in_full(mut self) -> Vec<u8> {
+        self.packed.extend(&self.interval.high.to_be_bytes());
+        self.packed
+    }
+}
+
+impl Default for Encoder {
+    fn default() -> Encoder {
+        Encoder::new()
     }
 }
 

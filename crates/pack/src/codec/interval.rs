@@ -8,6 +8,7 @@
 //! Source: the coder of Matt Mahoney's lpaq1.
 
 /// The interval, for coder and decoder.
+#[repr(C)]
 pub struct Interval {
     /// The lower end.
     pub low: u32,
@@ -42,36 +43,40 @@ impl Interval {
 }
 
 /// Reads bits back.
+#[repr(C)]
 pub struct Decoder<'a> {
     interval: Interval,
-    input: &'a [u8],
     code: u32,
+    input: &'a [u8],
 }
 
 impl<'a> Decoder<'a> {
-    /// At the start of `input`.
+    /// At the start of `input`. The interval of one number is settled four times before the first bit,
+    /// which reads the first four bytes.
     pub fn new(input: &'a [u8]) -> Decoder<'a> {
-        let mut decoder = Decoder { interval: Interval::WHOLE, input, code: 0 };
-        for _ in 0..4 {
-            decoder.next();
-        }
-        decoder
-    }
-
-    fn next(&mut self) {
-        let (&byte, rest) = self.input.split_first().unwrap_or((&0, &[]));
-        self.input = rest;
-        self.code = self.code << 8 | u32::from(byte);
+        Decoder { interval: Interval { low: 0, high: 0 }, code: 0, input }
     }
 
     /// The next bit, which is a one with the probability `one`, in 16 bits.
     pub fn bit(&mut self, one: u32) -> u32 {
+        self.settle();
         let split = self.interval.split(one);
         let bit = u32::from(self.code <= split);
         self.interval.narrow(split, bit);
-        while self.interval.settled() {
-            self.next();
-        }
         bit
+    }
+
+    fn settle(&mut self) {
+        while self.interval.settled() {
+            let (&byte, rest) = self.input.split_first().unwrap_or((&0, &[]));
+            self.input = rest;
+            self.code = self.code << 8 | u32::from(byte);
+        }
+    }
+
+    /// What lies behind this code, if that was ended in full.
+    pub fn rest(&mut self) -> &'a [u8] {
+        self.settle();
+        self.input
     }
 }

@@ -8,16 +8,16 @@
 //! the error, the less the more often they were seen. There is neither mixer nor counter: it is
 //! logistic regression, with a context's presence as its features.
 
-use super::interval::Decoder;
 use super::logistic::squash;
 
 /// Number of contexts: the subsets of three bytes.
 const CONTEXTS: usize = 8;
-/// Weights, all contexts together, as a power of two.
-const CELL_BITS: u32 = 20;
+/// Weights of each context, as a power of two.
+const CELL_BITS: u32 = 17;
 
 /// One weight.
 #[derive(Clone, Copy, Default)]
+#[repr(C)]
 pub struct Cell {
     weight: f32,
     /// How often it was used.
@@ -25,74 +25,42 @@ pub struct Cell {
 }
 
 /// The memory of the coder; zeros at the start.
-pub type Cells = [Cell; 1 << CELL_BITS];
+pub type Cells = [Cell; CONTEXTS << CELL_BITS];
 
-/// The model.
-pub struct Model<'a> {
-    cells: &'a mut Cells,
-    /// The last bytes, the last one lowest.
-    last: u32,
-    /// The bits of the byte so far, behind a leading one.
-    partial: u32,
-    places: [usize; CONTEXTS],
-    probability: f32,
-}
-
-impl Model<'_> {
-    /// A model at the start, in memory of zeros.
-    pub fn new(cells: &mut Cells) -> Model<'_> {
-        Model { cells, last: 0, partial: 1, places: [0; CONTEXTS], probability: 0.0 }
-    }
-
-    /// Probability of a one, in 16 bits.
-    pub fn predict(&mut self) -> u32 {
+/// The next byte, after the bytes `last`, the last one lowest. `coder` is told for each bit how likely
+/// it is a one, in 16 bits, and tells which it is.
+pub fn byte(cells: &mut Cells, last: u32, mut coder: impl FnMut(u32) -> u32) -> u8 {
+    let mut byte = 1;
+    while byte < 256 {
+        let seen = last << 8 | byte;
+        let mut places = [0; CONTEXTS];
         let mut sum = 0.0;
-        for (subset, place) in self.places.iter_mut().enumerate() {
-            let mut hash = self.partial << 8 | (subset as u32) << 17;
-            for byte in 0..3 {
-                if subset >> byte & 1 == 1 {
-                    hash = (hash ^ self.last >> (8 * byte) & 0xff).wrapping_mul(0x9e37_79b1);
-                    hash ^= hash >> 15;
-                }
-            }
-            *place = (hash.wrapping_mul(0x2c1b_3c6d) >> (32 - CELL_BITS)) as usize;
-            sum += self.cells[*place & ((1 << CELL_BITS) - 1)].weight;
+        for (subset, place) in places.iter_mut().enumerate() {
+            // Bit i of the subset becomes the bits of byte i + 1.
+            let mask = (subset as u32 * 0x4081 & 0x0001_0101) * 0xff00 | 0xff;
+            let hash = (seen & mask).wrapping_mul(0x9e37_79b1) >> (32 - CELL_BITS);
+            *place = subset << CELL_BITS | hash as usize;
+            sum += cells[*place & (cells.len() - 1)].weight;
         }
-        self.probability = squash(sum);
-        // SAFETY: the probability is less than 1, and no less than 0.
-        unsafe { (self.probability * 65536.0).to_int_unchecked::<i32>() as u32 }
-    }
-
-    /// Learns the bit that came. Returns the byte that it completes, if it does.
-    pub fn learn(&mut self, bit: u32) -> Option<u8> {
-        let error = bit as f32 - self.probability;
-        for &place in &self.places {
-            let cell = &mut self.cells[place & ((1 << CELL_BITS) - 1)];
+        let probability = squash(sum);
+        // SAFETY: the product is no less than 0 and less than 65536.
+        let bit = coder(unsafe { (probability * 65536.0).to_int_unchecked::<i32>() } as u32);
+        let error = bit as f32 - probability;
+        for place in places {
+            let cell = &mut cells[place & (cells.len() - 1)];
             cell.weight += error * 0.5 / (1.0 + cell.seen * 0.04);
             cell.seen += 1.0;
         }
-        self.partial = self.partial << 1 | bit;
-        let byte = self.partial as u8;
-        if self.partial < 256 {
-            return None;
-        }
-        self.last = self.last << 8 | u32::from(byte);
-        self.partial = 1;
-        Some(byte)
+        byte = byte << 1 | bit;
     }
+    byte as u8
 }
 
-/// Decodes `input` until `output` is full, with `cells` of zeros.
-pub fn decode(cells: &mut Cells, input: &[u8], output: &mut [u8]) {
-    let mut model = Model::new(cells);
-    let mut decoder = Decoder::new(input);
+/// Decodes until `output` is full, with `cells` of zeros.
+pub fn decode(cells: &mut Cells, output: &mut [u8], mut coder: impl FnMut(u32) -> u32) {
+    let mut last = 0;
     for place in output {
-        loop {
-            let bit = decoder.bit(model.predict());
-            if let Some(byte) = model.learn(bit) {
-                *place = byte;
-                break;
-            }
-        }
+        *place = byte(cells, last, &mut coder);
+        last = last << 8 | u32::from(*place);
     }
 }
