@@ -37,7 +37,7 @@ pub fn byte(cells: &mut Cells, last: u32, mut coder: impl FnMut(u32) -> u32) -> 
         let mut sum = 0.0;
         for (subset, place) in places.iter_mut().enumerate() {
             // Bit i of the subset becomes the bits of byte i + 1.
-            let mask = (subset as u32 * 0x4081 & 0x0001_0101) * 0xff00 | 0xff;
+            let mask = ((subset as u32 * 0x4081) & 0x0001_0101) * 0xff00 + 0xff;
             let hash = (seen & mask).wrapping_mul(0x9e37_79b1) >> (32 - CELL_BITS);
             *place = subset << CELL_BITS | hash as usize;
             sum += cells[*place & (cells.len() - 1)].weight;
