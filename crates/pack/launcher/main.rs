@@ -23,9 +23,8 @@ use system::*;
 // Functions of the opener.
 unsafe extern "C" {
     safe fn luc_bit(decoder: &mut Decoder, one: u32) -> u32;
-    safe fn luc_call(number: usize, a: usize, b: usize, c: usize, d: usize, e: usize) -> isize;
     safe fn luc_die(sentence: Sentence, code: usize) -> !;
-    fn luc_crc32(bytes: *const u8, length: usize) -> u32;
+    fn luc_checksum(bytes: *const u8, length: usize) -> u32;
     /// What follows the main part.
     static behind: Header;
 }
@@ -41,9 +40,9 @@ unsafe extern "C" fn _start(stack: *const usize, decoder: &mut Decoder<'static>)
     if header.flags & NEEDS_AVX2 != 0 && !has_avx2() {
         luc_die(sentence(b": needs a processor with AVX2, and this one has none\n\0"), 2);
     }
-    luc_call(ALARM, PATIENCE, 0, 0, 0, 0);
+    call!(ALARM, PATIENCE);
     // SAFETY: the opener has mapped memory there, all zeros behind the header.
-    let (program, crc) = unsafe {
+    let (program, checksum) = unsafe {
         let known = (&raw const behind).addr() + size_of::<Header>() - MAIN_AT;
         let memory = slice::from_raw_parts_mut(MAIN_AT as *mut u8, known + header.length as usize);
         decode(decoder, memory, known);
@@ -53,12 +52,12 @@ unsafe extern "C" fn _start(stack: *const usize, decoder: &mut Decoder<'static>)
             let address = header.base.wrapping_add(header.code_start);
             codec::filter::filter(code, address, codec::filter::Direction::Unpack);
         }
-        (&*program, luc_crc32(program.as_ptr(), program.len()))
+        (&*program, luc_checksum(program.as_ptr(), program.len()))
     };
-    if crc != header.crc {
+    if checksum != header.checksum {
         luc_die(DAMAGED, 3);
     }
-    luc_call(ALARM, 0, 0, 0, 0, 0);
+    call!(ALARM, 0);
     run(program, stack);
     luc_die(sentence(b": can neither start from memory nor write to /tmp\n\0"), 4)
 }
@@ -68,7 +67,7 @@ fn decode(decoder: &mut Decoder<'static>, memory: &mut [u8], known: usize) {
     #[cfg(luc_method = "cm")]
     {
         use codec::model::Model;
-        luc_call(MADVISE, MODEL_AT, size_of::<Model>(), HUGE_PAGES, 0, 0);
+        call!(MADVISE, MODEL_AT, size_of::<Model>(), HUGE_PAGES);
         // SAFETY: the opener has mapped memory there, all zeros, which is a valid model.
         let model = unsafe { &mut *(MODEL_AT as *mut Model) };
         codec::cm::decode(model, memory, known, |one| luc_bit(decoder, one));
@@ -126,13 +125,9 @@ fn run(program: &[u8], stack: *const usize) {
         }
         (arguments.addr(), environment.addr(), directory)
     };
-    let write = |file: isize| {
-        luc_call(WRITE, file as usize, program.as_ptr().addr(), program.len(), 0, 0) == program.len() as isize
-    };
-    let execute = |file: isize| {
-        luc_call(EXECVEAT, file as usize, path(c""), arguments, environment, AT_EMPTY_PATH);
-    };
-    let file = luc_call(MEMFD_CREATE, path(c"luc"), MFD_CLOEXEC, 0, 0, 0);
+    let write = |file: isize| call!(WRITE, file, program.as_ptr(), program.len()) == program.len() as isize;
+    let execute = |file: isize| call!(EXECVEAT, file, path(c""), arguments, environment, AT_EMPTY_PATH);
+    let file = call!(MEMFD_CREATE, path(c"luc"), MFD_CLOEXEC);
     if write(file) {
         execute(file);
     }
@@ -146,12 +141,12 @@ fn run(program: &[u8], stack: *const usize) {
     for directory in [directory, path(c"/tmp")] {
         // The file is new, nobody else may touch it, and it is closed for writing, as the system
         // demands, and nameless before the program starts.
-        let directory = luc_call(OPENAT, 0, directory, O_DIRECTORY | O_CLOEXEC, 0, 0) as usize;
-        let file = luc_call(OPENAT, directory, name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0o700, 0);
+        let directory = call!(OPENAT, 0, directory, O_DIRECTORY | O_CLOEXEC);
+        let file = call!(OPENAT, directory, name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0o700);
         let complete = write(file);
-        luc_call(CLOSE, file as usize, 0, 0, 0, 0);
-        let file = luc_call(OPENAT, directory, name, O_CLOEXEC, 0, 0);
-        luc_call(UNLINKAT, directory, name, 0, 0, 0);
+        call!(CLOSE, file);
+        let file = call!(OPENAT, directory, name, O_CLOEXEC);
+        call!(UNLINKAT, directory, name, 0);
         if complete {
             execute(file);
         }

@@ -43,14 +43,14 @@ fn word(at: usize) -> usize {
 #[unsafe(link_section = ".text.start")]
 #[unsafe(no_mangle)]
 unsafe extern "C" fn start(stack: *const usize) -> ! {
-    luc_call(ALARM, PATIENCE, 0, 0, 0, 0);
-    if luc_call(MMAP, MAIN_AT, MEMORY, READ_WRITE_EXECUTE, PRIVATE_ANONYMOUS_FIXED, NO_FILE) < 0 {
-        luc_die(sentence(b": not enough memory\n\0"), 4);
+    call!(ALARM, PATIENCE);
+    if call!(MMAP, MAIN_AT, MEMORY, READ_WRITE_EXECUTE, PRIVATE_ANONYMOUS_FIXED, NO_FILE, 0) < 0 {
+        luc_die(sentence(b": no memory\n\0"), 4);
     }
     let end = LOADED_AT + word(FILE_LENGTH_AT);
     // If the file is shorter than that, its last bytes aren't in memory: then this senseless call
     // complains about where its argument is.
-    if luc_call(RT_SIGPROCMASK, SENSELESS, end - SIGNALS, 0, SIGNALS, 0) == EFAULT {
+    if call!(RT_SIGPROCMASK, SENSELESS, end - SIGNALS, 0, SIGNALS) == EFAULT {
         luc_die(DAMAGED, 3);
     }
     // SAFETY: the packer has put the code there, and the main part at its beginning, linked for
@@ -60,7 +60,7 @@ unsafe extern "C" fn start(stack: *const usize) -> ! {
         let mut decoder = Decoder::new(slice::from_raw_parts(code as *const u8, end - code));
         let main = slice::from_raw_parts_mut(MAIN_AT as *mut u8, word(MAIN_LENGTH_AT));
         small::decode(&mut *(CELLS_AT as *mut small::Cells), main, |one| luc_bit(&mut decoder, one));
-        if luc_crc32(main.as_ptr(), main.len()) as usize != word(MAIN_CRC_AT) {
+        if luc_checksum(main.as_ptr(), main.len()) as usize != word(MAIN_CHECKSUM_AT) {
             luc_die(DAMAGED, 3);
         }
         let start: extern "C" fn(*const usize, &mut Decoder) -> ! = core::mem::transmute(MAIN_AT);
@@ -81,23 +81,9 @@ extern "C" fn luc_bit(decoder: &mut Decoder, one: u32) -> u32 {
 /// They must be there.
 #[unsafe(no_mangle)]
 #[inline(never)]
-unsafe extern "C" fn luc_crc32(bytes: *const u8, length: usize) -> u32 {
+unsafe extern "C" fn luc_checksum(bytes: *const u8, length: usize) -> u32 {
     // SAFETY: the caller's.
-    codec::checksum::crc32(unsafe { slice::from_raw_parts(bytes, length) })
-}
-
-/// A system call; results from -4095 to -1 are errors.
-#[unsafe(no_mangle)]
-#[inline(never)]
-extern "C" fn luc_call(number: usize, a: usize, b: usize, c: usize, d: usize, e: usize) -> isize {
-    let result;
-    // SAFETY: the calling convention of Linux: six arguments, rcx and r11 are lost. The sixth
-    // matters to `mmap` alone, which gets no file and so no offset.
-    unsafe {
-        core::arch::asm!("syscall", inlateout("rax") number => result, in("rdi") a, in("rsi") b, in("rdx") c,
-            in("r10") d, in("r8") e, in("r9") 0usize, lateout("rcx") _, lateout("r11") _);
-    }
-    result
+    codec::checksum::checksum(unsafe { slice::from_raw_parts(bytes, length) })
 }
 
 /// Says the program's name and the sentence, which ends with a zero, and ends the process.
@@ -107,7 +93,7 @@ extern "C" fn luc_die(sentence: Sentence, code: usize) -> ! {
     say(LOADED_AT + NAME_AT);
     say(sentence.as_ptr().addr());
     loop {
-        luc_call(EXIT_GROUP, code, 0, 0, 0, 0);
+        call!(EXIT_GROUP, code);
     }
 }
 
@@ -119,5 +105,5 @@ fn say(text: usize) {
     while unsafe { *((text + length) as *const u8) } != 0 {
         length += 1;
     }
-    luc_call(WRITE, 2, text, length, 0, 0);
+    call!(WRITE, 2, text, length);
 }

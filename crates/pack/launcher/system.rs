@@ -50,6 +50,24 @@ pub const fn sentence(text: &'static [u8]) -> Sentence {
     unsafe { &*text.as_ptr().cast() }
 }
 
+/// A system call with up to six arguments; results from -4095 to -1 are errors. In line, so that
+/// only registers that matter are set.
+#[macro_export]
+macro_rules! call {
+    ($number:expr, $a:expr $(, $b:expr $(, $c:expr $(, $d:expr $(, $e:expr $(, $f:expr)?)?)?)?)?) => {{
+        let result: isize;
+        // SAFETY: as safe as what the system does with these arguments, which are as Linux calls
+        // for. By its calling convention rcx and r11 are lost.
+        #[allow(unused_unsafe, reason = "some are in unsafe blocks")]
+        unsafe {
+            core::arch::asm!("syscall", inlateout("rax") $number => result, in("rdi") $a
+                $(, in("rsi") $b $(, in("rdx") $c $(, in("r10") $d $(, in("r8") $e $(, in("r9") $f)?)?)?)?)?,
+                lateout("rcx") _, lateout("r11") _);
+        }
+        result
+    }};
+}
+
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo) -> ! {
     unsafe extern "C" {

@@ -174,9 +174,9 @@ fn array_at<const N: usize>(bytes: &[u8], at: usize) -> Result<[u8; N], Error> {
 pub struct Headers<'a> {
     /// What the program calls itself in messages.
     pub name: &'a str,
-    /// Length and CRC-32 of the launcher's main part with its header.
+    /// Length and checksum of the launcher's main part with its header.
     pub main_length: u32,
-    pub main_crc: u32,
+    pub main_checksum: u32,
     /// Length of the file.
     pub file: usize,
 }
@@ -215,7 +215,7 @@ impl Headers<'_> {
         for word in [0, LOADED_AT] {
             bytes.extend((word as u64).to_le_bytes());
         }
-        for word in [self.main_length, self.main_crc] {
+        for word in [self.main_length, self.main_checksum] {
             bytes.extend(word.to_le_bytes());
         }
         for word in [self.file, self.file, 0x1000] {

@@ -1,6 +1,6 @@
 //! The packers' encoding halves.
 
-use crate::codec::interval::Interval;
+use crate::codec::interval::{NARROW, part};
 use crate::codec::model::Model;
 use crate::codec::small;
 
@@ -66,25 +66,55 @@ fn bits(byte: u8) -> impl Iterator<Item = u32> {
 }
 
 /// Writes bits for [`crate::codec::interval::Decoder`].
+///
+/// The lower end of the interval has bytes that are written already, a byte of its own, and 24 bits
+/// more. What is added to it may carry into what is written.
 pub struct Encoder {
-    interval: Interval,
+    low: u64,
+    range: u32,
     packed: Vec<u8>,
 }
 
 impl Encoder {
     /// With nothing coded yet.
     pub fn new() -> Encoder {
-        Encoder { interval: Interval::WHOLE, packed: Vec::new() }
+        Encoder { low: 0, range: NARROW, packed: Vec::new() }
     }
 
     /// A bit that is a one with the probability `one`, in 16 bits.
     pub fn bit(&mut self, bit: u32, one: u32) {
-        self.interval.narrow(self.interval.split(one), bit);
-        let mut top = (self.interval.high >> 24) as u8;
-        while self.interval.settled() {
-            self.packed.push(top);
-            top = (self.interval.high >> 24) as u8;
+        let part = part(self.range, one);
+        if bit == 1 {
+            self.range = part;
+        } else {
+            self.add(part);
+            self.range -= part;
         }
+        while self.range < NARROW {
+            self.range <<= 8;
+            self.shift();
+        }
+    }
+
+    /// Moves the lower end up.
+    fn add(&mut self, amount: u32) {
+        self.low += u64::from(amount);
+        if self.low >> 32 != 0 {
+            self.low &= 0xffff_ffff;
+            // The interval never ends above 1, so some byte takes the carry.
+            for byte in self.packed.iter_mut().rev() {
+                *byte = byte.wrapping_add(1);
+                if *byte != 0 {
+                    break;
+                }
+            }
+        }
+    }
+
+    /// Writes the byte.
+    fn shift(&mut self) {
+        self.packed.push((self.low >> 24) as u8);
+        self.low = self.low << 8 & 0xffff_ffff;
     }
 
     /// Bytes so far.
@@ -94,16 +124,25 @@ impl Encoder {
 
     /// The code, ended by the fewest bytes that lie in the interval when zeros follow.
     pub fn finish(mut self) -> Vec<u8> {
-        let Interval { low, high } = self.interval;
-        let kept = |count: u32| if count == 0 { 0 } else { high & !0 << (32 - 8 * count) };
-        let count = (0..4).find(|&count| kept(count) >= low).unwrap_or(4);
-        self.packed.extend(&high.to_be_bytes()[..count as usize]);
-        self.packed
+        // The number with the most zeros at its end that is no less than the lower end.
+        let end = self.low + u64::from(self.range);
+        let up = |zeros: u32| (self.low + (1 << zeros) - 1) >> zeros << zeros;
+        let number = (0..=32).rev().map(up).find(|&number| number < end).unwrap_or(self.low);
+        self.add((number - self.low) as u32);
+        let mut packed = self.finish_in_full();
+        while packed.last() == Some(&0) {
+            packed.pop();
+        }
+        packed
     }
 
     /// The code, ended in full so that other data may follow.
     pub fn finish_in_full(mut self) -> Vec<u8> {
-        self.packed.extend(&self.interval.high.to_be_bytes());
+        for _ in 0..4 {
+            self.shift();
+        }
+        // The first byte is always 0 and carries nothing; the decoder starts behind it.
+        self.packed.remove(0);
         self.packed
     }
 }

@@ -20,7 +20,7 @@ pub mod report;
 pub mod size_build;
 
 use codec::format::{ELF_HEADERS, Header, NEEDS_AVX2};
-use codec::{checksum::crc32, filter};
+use codec::{checksum::checksum, filter};
 pub use error::Error;
 
 /// How to compress.
@@ -99,7 +99,7 @@ pub fn pack_elf_as(file: &[u8], options: &Options) -> Result<Packed, Error> {
         filter::filter(&mut filtered[code.range.clone()], start, filter::Direction::Pack);
     }
     let header = Header {
-        crc: crc32(&stripped),
+        checksum: checksum(&stripped),
         length: stripped.len() as u32,
         flags: if options.needs_avx2 { NEEDS_AVX2 } else { 0 },
         code_start: code.range.start as u32,
@@ -126,7 +126,7 @@ pub fn pack_elf_as(file: &[u8], options: &Options) -> Result<Packed, Error> {
     let headers = elf::Headers {
         name: options.name,
         main_length: main.len() as u32,
-        main_crc: crc32(&main),
+        main_checksum: checksum(&main),
         file: ELF_HEADERS + OPENER.len() + coded.len(),
     };
     let file = [&headers.bytes(), OPENER, &coded].concat();

@@ -8,8 +8,8 @@
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(C)]
 pub struct Header {
-    /// CRC-32 of the program.
-    pub crc: u32,
+    /// Checksum of the program.
+    pub checksum: u32,
     /// Length of the program, bytes.
     pub length: u32,
     /// [`NEEDS_AVX2`] or 0.
@@ -29,7 +29,7 @@ pub const NEEDS_AVX2: u32 = 1;
 impl Header {
     /// The header's words, in order.
     pub fn words(&self) -> [u32; 6] {
-        [self.crc, self.length, self.flags, self.code_start, self.code_end, self.base]
+        [self.checksum, self.length, self.flags, self.code_start, self.code_end, self.base]
     }
 }
 
@@ -43,9 +43,9 @@ pub const ELF_HEADERS: usize = 64 + 56 - 8;
 /// In these headers, where nothing is that the system reads: the program's name for messages,
 /// filled up with zeros;
 pub const NAME_AT: usize = 8;
-/// the length of the main part with its header, and the CRC-32 of both;
+/// the length of the main part with its header, and the checksum of both;
 pub const MAIN_LENGTH_AT: usize = 56 + 24;
-pub const MAIN_CRC_AT: usize = MAIN_LENGTH_AT + 4;
+pub const MAIN_CHECKSUM_AT: usize = MAIN_LENGTH_AT + 4;
 /// and, which the system does read, the file's length.
 pub const FILE_LENGTH_AT: usize = 56 + 32;
 

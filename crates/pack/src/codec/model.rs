@@ -36,8 +36,9 @@ const CONTEXTS: usize = {
 const EXPECTED: usize = fact::OTHERS;
 /// The hash of the last five bytes.
 const ORDER: usize = EXPECTED + 1;
-/// The place in its group of four bytes.
+/// The place in its group of four bytes, and of 32.
 const PHASE: usize = ORDER + 1;
+const PLACE: usize = PHASE + 1;
 
 /// Mixers.
 const MIXERS: usize = 5;
@@ -206,7 +207,10 @@ impl Model {
             for i in 0..MIXERS {
                 trust[i] += error * mixed[i];
                 let error = bit as f32 - squash(mixed[i]);
-                move_along(&mut self.weights[i][sets[i] & (SETS - 1)], error * rate, &self.opinions);
+                // A mixer that is nearly right has little to learn, and time is short.
+                if error.abs() > 0.01 {
+                    move_along(&mut self.weights[i][sets[i] & (SETS - 1)], error * rate, &self.opinions);
+                }
             }
             for context in &mut self.contexts {
                 let slot = &mut self.slots[place(context.half, half)];
@@ -245,6 +249,7 @@ impl Model {
         walker.facts[fact::STATE] =
             walker.part as u32 | u32::from(walker.left) << 4 | u32::from(walker.map) << 8;
         walker.facts[PHASE] = self.position & 3;
+        walker.facts[PLACE] = self.position & 31;
         walker.facts[ORDER] = 0;
         for i in fact::BYTES..fact::BYTES + 5 {
             walker.facts[ORDER] = mix(walker.facts[ORDER], walker.facts[i]);

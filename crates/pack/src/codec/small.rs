@@ -2,7 +2,7 @@
 //!
 //! The launcher proper is several kilobytes of machine code, so only its first part, the opener,
 //! stands in the file as it is, and decodes the rest. Its coder must be small before all else:
-//! 300 bytes of code that save 3,000. Each of the eight subsets of the last three bytes is a
+//! 300 bytes of code that save 3,000. Each of eight sets of bits of the last three bytes is a
 //! context; under the hash of what it sees and of the bits so far it keeps one weight, and the
 //! sum of the eight weights, squashed, is the probability. After each bit the weights move along
 //! the error, the less the more often they were seen. There is neither mixer nor counter: it is
@@ -10,8 +10,11 @@
 
 use super::logistic::squash;
 
-/// Number of contexts: the subsets of three bytes.
+/// Number of contexts.
 const CONTEXTS: usize = 8;
+/// Which bits each sees of the byte so far (the lowest eight) and the three bytes before it.
+static SEEN: [u32; CONTEXTS] =
+    [0x0000_00ff, 0x0000_ffff, 0x00ff_00ff, 0x00ff_ffff, 0xff00_00ff, 0xff00_ffff, 0xffff_00ff, 0xffff_ffff];
 /// Weights of each context, as a power of two.
 const CELL_BITS: u32 = 17;
 
@@ -20,7 +23,7 @@ const CELL_BITS: u32 = 17;
 #[repr(C)]
 pub struct Cell {
     weight: f32,
-    /// How often it was used.
+    /// How often it was used, times 0.08.
     seen: f32,
 }
 
@@ -32,24 +35,27 @@ pub type Cells = [Cell; CONTEXTS << CELL_BITS];
 pub fn byte(cells: &mut Cells, last: u32, mut coder: impl FnMut(u32) -> u32) -> u8 {
     let mut byte = 1;
     while byte < 256 {
-        let seen = last << 8 | byte;
-        let mut places = [0; CONTEXTS];
-        let mut sum = 0.0;
-        for (subset, place) in places.iter_mut().enumerate() {
-            // Bit i of the subset becomes the bits of byte i + 1.
-            let mask = ((subset as u32 * 0x4081) & 0x0001_0101) * 0xff00 + 0xff;
-            let hash = (seen & mask).wrapping_mul(0x9e37_79b1) >> (32 - CELL_BITS);
-            *place = subset << CELL_BITS | hash as usize;
-            sum += cells[*place & (cells.len() - 1)].weight;
-        }
-        let probability = squash(sum);
-        // SAFETY: the product is no less than 0 and less than 65536.
-        let bit = coder(unsafe { (probability * 65536.0).to_int_unchecked::<i32>() } as u32);
-        let error = bit as f32 - probability;
-        for place in places {
-            let cell = &mut cells[place & (cells.len() - 1)];
-            cell.weight += error * 0.5 / (1.0 + cell.seen * 0.04);
-            cell.seen += 1.0;
+        const UNKNOWN: u32 = 2;
+        let mut bit = UNKNOWN;
+        // The first time round nothing moves, the second time all weights along the error.
+        let (mut error, mut step) = (0.0, 0.0);
+        loop {
+            let mut sum = 0.0;
+            for (context, mask) in SEEN.iter().enumerate() {
+                let hash = ((last << 8 | byte) & mask).wrapping_mul(0x9e37_79b1) >> (32 - CELL_BITS);
+                let cell = &mut cells[context << CELL_BITS | hash as usize];
+                cell.weight += error / (2.0 + cell.seen);
+                cell.seen += step;
+                sum += cell.weight;
+            }
+            if bit != UNKNOWN {
+                break;
+            }
+            let probability = squash(sum);
+            // SAFETY: the product is no less than 0 and less than 65536.
+            bit = coder(unsafe { (probability * 65536.0).to_int_unchecked::<i32>() } as u32);
+            error = bit as f32 - probability;
+            step = 0.08;
         }
         byte = byte << 1 | bit;
     }

@@ -113,10 +113,10 @@ pub mod fact {
     pub const IMMEDIATE: usize = 7;
     /// Facts of an instruction; those of the three instructions before follow.
     pub const RECORD: usize = 8;
-    /// The last eight bytes, the last one first.
+    /// The last sixteen bytes, the last one first.
     pub const BYTES: usize = 4 * RECORD;
     /// What the next byte is, and how much of that is to come.
-    pub const STATE: usize = BYTES + 8;
+    pub const STATE: usize = BYTES + 16;
     /// The bytes so far of the displacement or constant.
     pub const FIELD: usize = STATE + 1;
     /// The last displacement of four bytes that was added to a register.
