@@ -50,7 +50,8 @@ unsafe extern "C" fn _start(stack: *const usize, decoder: &mut Decoder<'static>)
         #[cfg(not(luc_method = "raw"))]
         if let Some(code) = program.get_mut(header.code_start as usize..header.code_end as usize) {
             let address = header.base.wrapping_add(header.code_start);
-            codec::filter::filter(code, address, codec::filter::Direction::Unpack);
+            let walker = &mut *(WALKER_AT as *mut codec::x86::Walker);
+            codec::filter::filter_with(walker, code, address, codec::filter::Direction::Unpack);
         }
         (&*program, luc_checksum(program.as_ptr(), program.len()))
     };

@@ -61,6 +61,9 @@ pub const LONGEST: usize = 2 << 20;
 /// Memory for the small coder.
 pub const CELLS_AT: usize = 0x100_0000;
 
+/// Memory for the filter's walker.
+pub const WALKER_AT: usize = 0x180_0000;
+
 /// Memory for the model of the method `cm`.
 pub const MODEL_AT: usize = 0x200_0000;
 

@@ -47,7 +47,7 @@ impl Stretch {
         let mut x = -LIMIT;
         for (step, value) in self.0.iter_mut().enumerate() {
             let middle = (step as f32 + 0.5) * (1.0 / STEPS as f32);
-            while x < LIMIT && squash(x) < middle {
+            while squash(x) < middle {
                 x += 0.005;
             }
             *value = x;
@@ -73,7 +73,14 @@ impl Four {
     }
 
     /// The same number in all lanes.
+    #[inline(always)]
     pub fn all(x: f32) -> Four {
+        #[cfg(target_arch = "x86_64")]
+        // SAFETY: `Four` and `__m128` are both 16 bytes of four floats.
+        unsafe {
+            core::mem::transmute(core::arch::x86_64::_mm_set1_ps(x))
+        }
+        #[cfg(not(target_arch = "x86_64"))]
         Four([x; 4])
     }
 

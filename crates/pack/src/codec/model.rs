@@ -19,16 +19,51 @@ use super::x86::{Walker, fact, mix};
 /// The facts that each context sees; the last one of each has [`LAST`] added.
 ///
 /// Found by a random search.
-static SEEN: &[u8] = &include!("seen.in");
+#[rustfmt::skip]
+static SEEN: [u8; 110] = [
+    32, 33, 34, 35, LAST + 36,
+    32, LAST + 56,
+    32, LAST + 33,
+    32, 33, 35, 36, 37, 38, LAST + 39,
+    0, 1, 2, LAST + 48,
+    LAST + 4,
+    0, 1, 2, 8, 10, 17, 18, 25, LAST + 26,
+    1, 8, 9, 36, 37, 48, LAST + 49,
+    1, 48, LAST + 49,
+    33, LAST + 34,
+    9, LAST + 48,
+    LAST + 56,
+    35, 39, LAST + 56,
+    4, LAST + 48,
+    4, 11, 48, LAST + 49,
+    9, 32, LAST + 57,
+    0, 1, 2, 4, 8, 9, 10, LAST + 48,
+    0, 1, 2, 9, LAST + 11,
+    4, 6, 12, 38, 43, LAST + 49,
+    0, 48, LAST + 49,
+    LAST + 33,
+    0, 1, 2, 8, LAST + 49,
+    12, LAST + 48,
+    9, 11, 19, LAST + 32,
+    LAST + 5,
+    6, 48, LAST + 49,
+    0, 1, 9, 17, 25, LAST + 48,
+    LAST + 48,
+    1, 7, LAST + 48,
+    LAST + 32,
+    17, 48, LAST + 49,
+    LAST + 51,
+];
 /// Marks the last fact of a context.
 const LAST: u8 = 0x80;
-/// Number of contexts.
+/// Number of contexts, a power of two.
 const CONTEXTS: usize = {
     let (mut count, mut i) = (0, 0);
     while i < SEEN.len() {
         count += (SEEN[i] >= LAST) as usize;
         i += 1;
     }
+    assert!(count.is_power_of_two());
     count
 };
 
@@ -51,7 +86,7 @@ const SLOT_BITS: u32 = 24;
 const FIRST_WEIGHT: f32 = 0.03;
 /// Learning rate of the mixers in the long run, and what is added to it at the start.
 const RATE: f32 = 0.0044;
-const EARLY_RATE: f32 = 0.012;
+const EARLY_RATE: f32 = 0.006;
 /// That of the mixer of mixers.
 const TRUST_RATE: f32 = 0.002;
 /// A slot's probability stops adapting faster than `1 / SETTLED` after that many bits.
@@ -99,7 +134,7 @@ pub struct Model {
     position: u32,
     opinions: [Four; CONTEXTS + 1],
     contexts: [Context; CONTEXTS],
-    /// Weights of the mixers themselves, by the part of the instruction.
+    /// How far the mixers' own weights are from equal ones, by the part of the instruction.
     trust: [[f32; MIXERS]; 64],
     /// How far a slot's probability moves, by the number of bits seen.
     shares: [u16; 256],
@@ -123,11 +158,8 @@ impl Model {
         for (seen, share) in self.shares.iter_mut().enumerate() {
             *share = (65536 / (seen * 2 + 3)) as u16;
         }
-        self.trust = [[1.0 / MIXERS as f32; MIXERS]; 64];
-        for sets in &mut self.weights {
-            for set in sets {
-                *set = [Four::all(FIRST_WEIGHT); CONTEXTS + 1];
-            }
+        for four in self.weights.as_flattened_mut().as_flattened_mut() {
+            *four = Four::all(FIRST_WEIGHT);
         }
         if let Some(last) = self.opinions.last_mut() {
             *last = Four::all(0.4);
@@ -141,13 +173,7 @@ impl Model {
         let facts = &self.walker.facts;
         let state = self.walker.part as usize | usize::from(self.walker.left.min(7)) << 3;
         let follower = facts[fact::OPCODE + fact::RECORD] & 1023 | u32::from(state == 0) << 10;
-        let mut sets = [
-            state * 8,
-            0,
-            facts[fact::OPCODE] as usize & 1023,
-            facts[fact::BYTES] as usize & 255,
-            follower as usize,
-        ];
+        let mut sets = [state as u32 * 8, 0, facts[fact::OPCODE] & 1023, facts[fact::BYTES] & 255, follower];
         let rate = RATE + EARLY_RATE / (1.0 + self.position as f32 * (1.0 / 4000.0));
         self.position += 1;
         let trust = &mut self.trust[state & 63];
@@ -187,16 +213,16 @@ impl Model {
                 *opinions = Four::of(four);
             }
             let first = &self.contexts[0];
-            sets[1] = byte as usize;
+            sets[1] = byte;
             if first.expected >> (rest + 1) == byte {
-                sets[1] |= first.times.min(7) as usize * 256;
+                sets[1] |= first.times.min(7) * 256;
             }
 
             let mut mixed = [0.0; MIXERS];
             let mut mean = 0.0;
             for i in 0..MIXERS {
-                mixed[i] = dot(&self.weights[i][sets[i] & (SETS - 1)], &self.opinions);
-                mean += mixed[i] * trust[i];
+                mixed[i] = dot(&self.weights[i][sets[i] as usize & (SETS - 1)], &self.opinions);
+                mean += mixed[i] * (trust[i] + 1.0 / MIXERS as f32);
             }
             let said = squash(mean);
             // SAFETY: the product is no less than 0 and less than 65536.
@@ -208,8 +234,12 @@ impl Model {
                 trust[i] += error * mixed[i];
                 let error = bit as f32 - squash(mixed[i]);
                 // A mixer that is nearly right has little to learn, and time is short.
-                if error.abs() > 0.01 {
-                    move_along(&mut self.weights[i][sets[i] & (SETS - 1)], error * rate, &self.opinions);
+                if error.abs() > 0.02 {
+                    move_along(
+                        &mut self.weights[i][sets[i] as usize & (SETS - 1)],
+                        error * rate,
+                        &self.opinions,
+                    );
                 }
             }
             for context in &mut self.contexts {
@@ -246,8 +276,7 @@ impl Model {
     /// What the contexts see before the next byte.
     fn look_around(&mut self) {
         let walker = &mut self.walker;
-        walker.facts[fact::STATE] =
-            walker.part as u32 | u32::from(walker.left) << 4 | u32::from(walker.map) << 8;
+        walker.facts[fact::STATE] = walker.state();
         walker.facts[PHASE] = self.position & 3;
         walker.facts[PLACE] = self.position & 31;
         walker.facts[ORDER] = 0;
@@ -256,15 +285,14 @@ impl Model {
         }
         walker.facts[EXPECTED] = u32::from(self.followed[usize::from(walker.facts[ORDER] as u16)]);
         walker.recall();
-        let mut contexts = self.contexts.iter_mut();
+        let mut i = 0;
         let mut hash = 0;
-        for &entry in SEEN {
+        for entry in SEEN {
             hash = mix(hash, walker.facts[usize::from(entry) & 63]);
-            if entry >= LAST
-                && let Some(context) = contexts.next()
-            {
-                context.hash = hash;
-                hash = contexts.len() as u32;
+            if entry >= LAST {
+                self.contexts[i & (CONTEXTS - 1)].hash = hash;
+                i += 1;
+                hash = i as u32;
             }
         }
     }

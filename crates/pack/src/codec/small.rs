@@ -14,7 +14,7 @@ use super::logistic::squash;
 const CONTEXTS: usize = 8;
 /// Which bits each sees of the byte so far (the lowest eight) and the three bytes before it.
 static SEEN: [u32; CONTEXTS] =
-    [0x0000_00ff, 0x0000_ffff, 0x00ff_00ff, 0x00ff_ffff, 0xff00_00ff, 0xff00_ffff, 0xffff_00ff, 0xffff_ffff];
+    [0x0000_00ff, 0x0000_f0ff, 0x0000_ffff, 0x00f0_ffff, 0x00ff_00ff, 0x00ff_f0ff, 0xff00_ffff, 0xfff0_00ff];
 /// Weights of each context, as a power of two.
 const CELL_BITS: u32 = 17;
 

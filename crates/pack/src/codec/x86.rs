@@ -165,6 +165,11 @@ impl Walker {
         recalled: [[0; 1024]; 3],
     };
 
+    /// What the next byte is, and what is still to come.
+    pub fn state(&self) -> u32 {
+        u32::from_le_bytes([self.part as u8, self.left, self.map, self.displacement])
+    }
+
     /// Fills in the facts from instructions further back.
     pub fn recall(&mut self) {
         for (i, ((key, _), memory)) in RECALLED.iter().zip(&self.recalled).enumerate() {
