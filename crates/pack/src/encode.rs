@@ -4,6 +4,12 @@ use crate::codec::interval::{NARROW, part};
 use crate::codec::model::Model;
 use crate::codec::small;
 
+/// Told now and then how many bytes of how many are packed.
+pub type Progress = fn(usize, usize);
+
+/// Bytes between two reports of progress.
+const STEP: usize = 4096;
+
 /// Memory of zeros as a model.
 pub fn new_model() -> Box<Model> {
     let layout = std::alloc::Layout::new::<Model>();
@@ -19,9 +25,9 @@ pub fn new_model() -> Box<Model> {
 }
 
 /// Context mixing: what [`crate::codec::cm::decode`] decodes, into `encoder`, with `lesson` in
-/// memory before. What each byte cost, bits.
+/// memory before. What each byte cost, bits. `progress` is told now and then how far it is.
 #[allow(clippy::disallowed_methods, reason = "costs are for reports, whose last digit doesn't matter")]
-pub fn cm(encoder: &mut Encoder, lesson: &[u8], bytes: &[u8]) -> Vec<f32> {
+pub fn cm(encoder: &mut Encoder, lesson: &[u8], bytes: &[u8], progress: Progress) -> Vec<f32> {
     let mut model = new_model();
     model.start();
     for &byte in lesson {
@@ -29,7 +35,10 @@ pub fn cm(encoder: &mut Encoder, lesson: &[u8], bytes: &[u8]) -> Vec<f32> {
         model.byte(|_| bits.next().unwrap_or(0));
     }
     let mut costs = vec![0.0; bytes.len()];
-    for (&byte, cost) in bytes.iter().zip(&mut costs) {
+    for (position, (&byte, cost)) in bytes.iter().zip(&mut costs).enumerate() {
+        if position % STEP == 0 {
+            progress(position, bytes.len());
+        }
         let mut bits = bits(byte);
         model.byte(|one| {
             let bit = bits.next().unwrap_or(0);

@@ -65,6 +65,21 @@ pub struct Options<'a> {
     pub name: &'a str,
     /// Whether to start on processors with AVX2 only, and to say so on others.
     pub needs_avx2: bool,
+    /// Told how far it is.
+    pub progress: encode::Progress,
+}
+
+/// For [`Options::progress`]: no one wants to know.
+pub fn silent(_: usize, _: usize) {}
+
+/// For [`Options::progress`]: a line on standard error, if that is a terminal and the program so
+/// long that it takes a while.
+pub fn percent(done: usize, all: usize) {
+    use std::io::{IsTerminal, stderr};
+    const WORTH_TELLING: usize = 50_000;
+    if all >= WORTH_TELLING && stderr().is_terminal() {
+        eprint!("\rpacking: {:3} %\x1b[K\r", done * 100 / all);
+    }
 }
 
 /// A packed program.
@@ -82,7 +97,7 @@ pub struct Packed {
 
 /// Packs a program; `file` is its ELF file.
 pub fn pack_elf(file: &[u8], method: Method) -> Result<Packed, Error> {
-    pack_elf_as(file, &Options { method, name: "program", needs_avx2: false })
+    pack_elf_as(file, &Options { method, name: "program", needs_avx2: false, progress: silent })
 }
 
 /// Packs a program with all choices.
@@ -114,7 +129,7 @@ pub fn pack_elf_as(file: &[u8], options: &Options) -> Result<Packed, Error> {
     let mut bits = Vec::new();
     let coded = match options.method {
         Method::Cm => {
-            bits = encode::cm(&mut encoder, &main, &filtered);
+            bits = encode::cm(&mut encoder, &main, &filtered, options.progress);
             encoder.finish()
         }
         method => {

@@ -9,7 +9,7 @@ const LESSON: &[u8] = b"\x48\x8b\x44\x24\x08\xe8";
 
 fn through_cm(bytes: &[u8]) -> Vec<u8> {
     let mut encoder = Encoder::new();
-    encode::cm(&mut encoder, LESSON, bytes);
+    encode::cm(&mut encoder, LESSON, bytes, luc_pack::silent);
     let coded = encoder.finish();
     let mut memory = [LESSON, &vec![0; bytes.len()]].concat();
     let mut decoder = Decoder::new(&coded);
