@@ -99,6 +99,19 @@ fn a_report_tells_what_each_function_costs() {
 }
 
 #[test]
+fn a_comparison_is_a_table() {
+    let directory = scratch("comparison");
+    std::fs::write(directory.join("program"), program()).unwrap();
+    let result = luc_pack(&directory, &["--compare", "program", "program"]);
+    assert!(result.status.success() && result.errors.is_empty(), "{result:?}");
+    let table = String::from_utf8(result.output).unwrap();
+    let columns = |line: &str| line.matches('|').count();
+    assert_eq!(table.lines().map(columns).collect::<Vec<_>>(), [9; 4], "{table}");
+    one_sentence(&luc_pack(&directory, &["--compare"]), "which file");
+    one_sentence(&luc_pack(&directory, &["--compare", "missing"]), "missing");
+}
+
+#[test]
 fn help_is_no_error() {
     for command in [env!("CARGO_BIN_EXE_luc-pack"), env!("CARGO_BIN_EXE_cargo-pack")] {
         let help = run(Command::new(command).arg("--help")).unwrap();

@@ -8,6 +8,7 @@ use std::process::ExitCode;
 
 const HELP: &str = "\
 luc-pack FILE -o OUT [--method cm|lzma|raw] [--report DIR]
+luc-pack --compare FILE...
 
 Packs the x86-64 Linux program FILE into the executable OUT.
 
@@ -16,6 +17,7 @@ Packs the x86-64 Linux program FILE into the executable OUT.
                      raw: no compression
       --report DIR   print what each crate, module and function costs packed, and write
                      DIR/report.html, with a map of all bytes; best for a program with symbols
+      --compare      print what gzip, zstd, xz, LZMA and context mixing make of the files
   -h, --help         this text
 ";
 
@@ -26,22 +28,31 @@ struct Arguments {
     report: Option<PathBuf>,
 }
 
+enum Task {
+    Pack(Arguments),
+    Compare(Vec<PathBuf>),
+}
+
 fn main() -> ExitCode {
-    let arguments = match arguments() {
-        Ok(Some(arguments)) => arguments,
+    let task = match task() {
+        Ok(Some(task)) => task,
         Ok(None) => {
             print!("{HELP}");
             return ExitCode::SUCCESS;
         }
         Err(error) => return fail(&format!("{error} (--help tells more)")),
     };
-    match pack(&arguments) {
+    let (result, input) = match &task {
+        Task::Pack(arguments) => (pack(arguments), &arguments.input),
+        Task::Compare(files) => (report::compare::compare(files), &files[0]),
+    };
+    match result {
         Ok(report) => {
             println!("{report}");
             ExitCode::SUCCESS
         }
         Err(error @ Error::File(..)) => fail(&error.to_string()),
-        Err(error) => fail(&format!("{}: {error}", arguments.input.display())),
+        Err(error) => fail(&format!("{}: {error}", input.display())),
     }
 }
 
@@ -50,12 +61,14 @@ fn fail(sentence: &str) -> ExitCode {
     ExitCode::from(2)
 }
 
-fn arguments() -> Result<Option<Arguments>, lexopt::Error> {
-    let (mut input, mut output, mut method, mut report) = (None, None, Method::Cm, None);
+fn task() -> Result<Option<Task>, lexopt::Error> {
+    let (mut files, mut output, mut method, mut report) = (Vec::new(), None, Method::Cm, None);
+    let mut compares = false;
     let mut parser = lexopt::Parser::from_env();
     while let Some(argument) = parser.next()? {
         match argument {
-            Value(file) if input.is_none() => input = Some(file.into()),
+            Value(file) if files.is_empty() || compares => files.push(PathBuf::from(file)),
+            Long("compare") => compares = true,
             Short('o') | Long("output") => output = Some(parser.value()?.into()),
             Long("method") => {
                 let name = parser.value()?.string()?;
@@ -66,12 +79,18 @@ fn arguments() -> Result<Option<Arguments>, lexopt::Error> {
             other => return Err(other.unexpected()),
         }
     }
-    let input = input.ok_or("which file is to be packed?")?;
+    if files.is_empty() {
+        return Err("which file is to be packed?".into());
+    }
+    if compares {
+        return Ok(Some(Task::Compare(files)));
+    }
+    let input = files.swap_remove(0);
     let output = output.ok_or("where to? -o OUT is missing")?;
     if report.is_some() && method != Method::Cm {
         return Err("--report tells what context mixing costs: leave out --method".into());
     }
-    Ok(Some(Arguments { input, output, method, report }))
+    Ok(Some(Task::Pack(Arguments { input, output, method, report })))
 }
 
 fn pack(arguments: &Arguments) -> Result<String, Error> {

@@ -1,5 +1,6 @@
 //! What `cargo pack` prints: where the bytes of the file go.
 
+pub mod compare;
 pub mod costs;
 pub mod history;
 pub mod page;
