@@ -121,7 +121,7 @@ pub mod fact {
     pub const FIELD: usize = STATE + 1;
     /// The last displacement of four bytes that was added to a register.
     pub const OFFSET: usize = STATE + 2;
-    /// What came with such a fact the last time, as [`super::RECALLED`] has it.
+    /// What came with such a fact the last time, by pairs of facts.
     pub const RECALLED: usize = STATE + 3;
     /// Facts that others fill in.
     pub const OTHERS: usize = RECALLED + 3;
