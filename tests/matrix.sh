@@ -3,7 +3,6 @@
 # other builds make of them.
 #
 #   tests/matrix.sh          all builds that this machine can make and run; says what is missing
-#   tests/matrix.sh ci       those that take a few minutes: release, SSE2, AVX2 with FMA
 #   tests/matrix.sh NAME...  only these
 #
 # Targets come from `rustup target add NAME`; aarch64 also wants gcc-aarch64-linux-gnu, libc6-dev-arm64-cross
@@ -13,7 +12,6 @@ cd "$(dirname "$0")/.."
 all=(release sse2 fma native unoptimised packed musl aarch64)
 case ${1:-} in
     "") wanted=("${all[@]}") ;;
-    ci) wanted=(release sse2 fma) ;;
     *) wanted=("$@") ;;
 esac
 target=target/matrix

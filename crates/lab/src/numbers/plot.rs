@@ -1,7 +1,7 @@
 //! The worst errors as a picture: a row per formula on a logarithmic axis.
 
 use super::Row;
-use super::report::short;
+use super::report::{raised, short};
 use std::fmt::Write;
 
 const LEFT: f64 = 230.0;
@@ -21,11 +21,15 @@ fn across(error: f64) -> f64 {
     LEFT + WIDE * ((log - AXIS[0]) / (AXIS[1] - AXIS[0])).clamp(0.0, 1.0)
 }
 
-/// 10 with its exponent raised.
+/// A power of ten, with its exponent raised from 10⁴ on.
 fn power_of_ten(power: i32) -> String {
-    let digits = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
-    let sign = if power < 0 { "⁻" } else { "" };
-    format!("10{sign}{}", digits[power.unsigned_abs() as usize % 10])
+    let mut whole = 1.0;
+    (0..power.abs()).for_each(|_| whole *= 10.0);
+    match power {
+        4.. => raised("10", power),
+        0.. => format!("{whole}"),
+        _ => format!("{}", 1.0 / whole),
+    }
 }
 
 /// A line of text whose `anchor` is at (x, y).
@@ -41,7 +45,7 @@ pub fn picture(rows: &[Row]) -> String {
     let mut svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
          viewBox=\"0 0 {width} {height}\" font-family=\"DejaVu Sans, Helvetica, Arial, sans-serif\" font-size=\"12\">\n\
-         <rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n\
+         <rect width=\"100%\" height=\"100%\" fill=\"#ffffff\" stroke=\"none\"/>\n\
          <text x=\"16\" y=\"28\" font-size=\"17\" fill=\"#1b1f24\">Worst error of each formula on hard cases</text>\n"
     );
     let legend = ["textbook, f32", "engine", "textbook, f64"];

@@ -3,13 +3,22 @@
 use super::{Column, Row};
 use std::fmt::Write;
 
+/// A number with a raised exponent of 0 or more.
+pub fn raised(base: &str, power: i32) -> String {
+    let digits = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    let power = power.to_string();
+    let up = power.bytes().filter_map(|b| digits.get(usize::from(b.wrapping_sub(b'0'))));
+    base.chars().chain(up.copied()).collect()
+}
+
 /// Three digits at most, or a power of ten.
 pub fn short(x: f64) -> String {
     if x.is_infinite() {
         "∞".into()
     } else if x >= 1e4 {
         let text = format!("{x:.0e}");
-        text.replace('e', "·10^")
+        let (digit, power) = text.split_once('e').unwrap_or((&text, "0"));
+        format!("{digit}·{}", raised("10", power.parse().unwrap_or(0)))
     } else if x >= 100.0 {
         format!("{x:.0}")
     } else if x >= 10.0 {

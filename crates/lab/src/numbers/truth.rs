@@ -1,4 +1,5 @@
-//! What is true, in f64: nearest crossings in front of a ray with shapes grown by a skin.
+//! What is true, in f64: nearest crossings in front of a ray with shapes grown by a skin. Flat ones grow
+//! away from the ray, which keeps what lies in front there.
 //!
 //! Distances are formed about the point of the ray that is nearest to the shape, so that f64 has digits to
 //! spare where f32 has none.
@@ -34,7 +35,7 @@ pub fn sphere(x: &Arguments<f32>, skin: f64) -> f64 {
 pub fn plane(x: &Arguments<f32>, skin: f64) -> f64 {
     let n = v(x, 9).normalize();
     let along = n.dot(v(x, 3));
-    let t = (n.dot(v(x, 6) - v(x, 0)) + skin) / along;
+    let t = n.dot(v(x, 6) - v(x, 0)) / along + skin / along.abs();
     if along == 0.0 { f64::NAN } else { first((t, t)) }
 }
 
@@ -119,7 +120,7 @@ pub fn triangle(x: &Arguments<f32>, skin: f64) -> f64 {
     let [a, b, c] = corners;
     let n = (b - a).cross(c - a).normalize_or_zero();
     let along = n.dot(d);
-    let t = (n.dot(a - o) + skin) / along;
+    let t = n.dot(a - o) / along + skin / along.abs();
     // A ray that may be parallel meets whatever grows.
     if along.abs() <= 5e-7 * d.length() {
         return if skin > 0.0 { 1.0 } else { f64::NAN };
