@@ -47,4 +47,5 @@ pub mod render;
 pub mod sample;
 pub mod scene;
 pub mod shade;
+pub mod study;
 pub mod trace;

@@ -1,5 +1,7 @@
 //! The quality ladder: every knob that trades accuracy for time, as six named presets.
 
+use crate::study::Study;
+
 /// What is interpolated between the samples of a cell that needs no further samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Rung {
@@ -48,6 +50,8 @@ pub struct Quality {
     pub cull: bool,
     /// Frames with different sample patterns that are averaged: 1, more for a still.
     pub average: u32,
+    /// What a study takes away; nothing in the show.
+    pub study: Study,
 }
 
 impl Quality {
@@ -71,6 +75,7 @@ impl Quality {
                 light_tile: 16,
                 cull: true,
                 average: 1,
+                study: Study::NONE,
             },
         ),
         (
@@ -91,6 +96,7 @@ impl Quality {
                 light_tile: 16,
                 cull: true,
                 average: 1,
+                study: Study::NONE,
             },
         ),
         (
@@ -111,6 +117,7 @@ impl Quality {
                 light_tile: 16,
                 cull: true,
                 average: 1,
+                study: Study::NONE,
             },
         ),
         (
@@ -131,6 +138,7 @@ impl Quality {
                 light_tile: 16,
                 cull: true,
                 average: 1,
+                study: Study::NONE,
             },
         ),
         (
@@ -151,6 +159,7 @@ impl Quality {
                 light_tile: 16,
                 cull: true,
                 average: 1,
+                study: Study::NONE,
             },
         ),
         (
@@ -171,6 +180,7 @@ impl Quality {
                 light_tile: 16,
                 cull: true,
                 average: 1,
+                study: Study::NONE,
             },
         ),
     ];
