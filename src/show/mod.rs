@@ -4,12 +4,14 @@
 //! pure function of its local frame, so any frame can be rendered on its own and nothing drifts.
 
 mod blobs;
+mod end;
 mod facets;
 mod gold;
 mod luc;
 mod mirror;
 mod paint;
 mod still;
+mod text;
 
 use luc_core::quality::Quality;
 use luc_core::render::Renderer;
@@ -38,6 +40,7 @@ pub const PARTS: &[Part] = &[
     Part { name: "gold", frames: 16 * BAR, scene: gold::scene },
     Part { name: "facets", frames: 12 * BAR, scene: facets::scene },
     Part { name: "blobs", frames: 10 * BAR, scene: blobs::scene },
+    Part { name: "end", frames: 4 * BAR, scene: end::scene },
 ];
 
 /// Length of the whole show in frames; frame n is frame n mod this.

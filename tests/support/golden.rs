@@ -10,7 +10,7 @@ use std::path::PathBuf;
 pub const SIZE: (u32, u32) = (320, 180);
 
 /// Part and local frame of the kept pictures.
-pub const FRAMES: [(&str, u64); 22] = [
+pub const FRAMES: [(&str, u64); 25] = [
     ("blobs", 0),     // the drop: the lattice closed
     ("blobs", 400),   // satellites fly
     ("blobs", 1199),  // last frame
@@ -33,13 +33,16 @@ pub const FRAMES: [(&str, u64); 22] = [
     ("facets", 300),  // bays grow
     ("facets", 640),  // all has grown, in shafts of light
     ("facets", 1439), // last frame: the vault
+    ("end", 0),       // first frame: no words yet
+    ("end", 320),     // all words
+    ("end", 479),     // last frame, which Lúč's first follows
 ];
 
 /// Part, local frame, preset, size.
 pub type Frame = (&'static str, u64, &'static str, (u32, u32));
 
 /// Frames whose fingerprints are kept.
-pub const FINGERPRINTS: [Frame; 22] = [
+pub const FINGERPRINTS: [Frame; 24] = [
     ("blobs", 12, "draft", (333, 187)),
     ("blobs", 700, "medium", (320, 180)),
     ("blobs", 950, "ultra", (320, 180)),
@@ -58,6 +61,8 @@ pub const FINGERPRINTS: [Frame; 22] = [
     ("gold", 1234, "high", (640, 360)),
     ("gold", 1699, "ultra", (333, 187)),
     ("gold", 1800, "reference", (96, 54)),
+    ("end", 240, "draft", (333, 187)),
+    ("end", 400, "ultra", (320, 180)),
     ("facets", 150, "draft", (333, 187)),
     ("facets", 480, "medium", (320, 180)),
     ("facets", 900, "ultra", (320, 180)),
@@ -77,11 +82,11 @@ pub const VALUES: [(&str, u64); 16] = [
     ("mirror", 1680),
     ("gold", 240),
     ("gold", 720),
-    ("gold", 1200),
     ("gold", 1680),
     ("facets", 180),
     ("facets", 720),
     ("facets", 1260),
+    ("end", 240),
 ];
 
 /// Size of those.
