@@ -3,18 +3,22 @@
 use dashu_ratio::RBig;
 use glam::Vec3;
 use proptest::prelude::*;
-use proptest::test_runner::FileFailurePersistence;
+use proptest::test_runner::{FileFailurePersistence, RngSeed};
 
 /// Half an ulp of 1.
 pub const U: f64 = 1.0 / 16_777_216.0;
 
-/// Cases of each law; failures are kept.
+/// Cases of each law, the same in every run; failures are kept. `PROPTEST_CASES` and `PROPTEST_RNG_SEED` draw
+/// more, or others.
 pub fn config(cases: u32) -> ProptestConfig {
     const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/kernels.regressions");
+    let given = ProptestConfig::default();
+    let set = |name| std::env::var_os(name).is_some();
     ProptestConfig {
-        cases,
+        cases: if set("PROPTEST_CASES") { given.cases } else { cases },
+        rng_seed: if set("PROPTEST_RNG_SEED") { given.rng_seed } else { RngSeed::Fixed(64) },
         failure_persistence: Some(Box::new(FileFailurePersistence::Direct(FILE))),
-        ..ProptestConfig::default()
+        ..given
     }
 }
 
@@ -28,6 +32,11 @@ pub fn size(lo: i32, hi: i32) -> impl Strategy<Value = f32> + Clone {
 pub fn signed(lo: i32, hi: i32) -> impl Strategy<Value = f32> + Clone {
     let size = prop_oneof![1 => Just(0.0_f32), 15 => size(lo, hi)];
     (size, any::<bool>()).prop_map(|(size, minus)| if minus { -size } else { size })
+}
+
+/// Evenly spread in `lo..hi`, in 2^24 steps.
+pub fn range(lo: f32, hi: f32) -> impl Strategy<Value = f32> + Clone {
+    (0_u32..1 << 24).prop_map(move |i| lo + (hi - lo) * (i as f32 / 16_777_216.0))
 }
 
 /// 0..=1, dense at both ends.

@@ -9,7 +9,7 @@ use proptest::prelude::*;
 
 fn node() -> impl Strategy<Value = Node> + Clone {
     let at = vector(-3, 3);
-    let half = [0.1_f32..1.0, 0.1_f32..1.0, 0.1_f32..1.0].prop_map(Vec3::from_array);
+    let half = [range(0.1, 1.0), range(0.1, 1.0), range(0.1, 1.0)].prop_map(Vec3::from_array);
     (0..7_u32, at, half, direction()).prop_map(|(kind, at, half, normal)| match kind {
         0 => Node::sphere(at, half.x),
         1 => Node::cuboid(at, half, 0.05),
@@ -59,8 +59,8 @@ proptest! {
     #[test]
     fn reflection_is_total_exactly_where_the_sine_says(
         cos in share(),
-        n_i in 1.0_f32..3.0,
-        n_t in 1.0_f32..3.0,
+        n_i in range(1.0, 3.0),
+        n_t in range(1.0, 3.0),
         // At the critical angle to the bit, or a few bits off.
         steps in prop_oneof![Just(None), (-4..5_i32).prop_map(Some)],
     ) {
@@ -83,7 +83,7 @@ proptest! {
 
     /// A refracted ray, turned round, comes back the way it came.
     #[test]
-    fn refraction_is_reversible(n in direction(), way in direction(), eta in 0.4_f32..2.5) {
+    fn refraction_is_reversible(n in direction(), way in direction(), eta in range(0.4, 2.5)) {
         let d = if way.dot(n) > 0.0 { -way } else { way };
         if let (true, Some(on)) = (d.dot(n) < -1e-3, kernels::refract(d, n, eta)) {
             let (cos, cos_out) = (-d.dot(n), -on.dot(n));
@@ -121,7 +121,7 @@ proptest! {
     }
 
     #[test]
-    fn schlick_lies_between_f0_and_all(f0 in 0.0_f32..=1.0, cos in share()) {
+    fn schlick_lies_between_f0_and_all(f0 in range(0.0, 1.0), cos in share()) {
         let share = kernels::schlick(f0, cos);
         prop_assert!((f0..=1.0).contains(&share), "{share}");
         let m = 1.0 - f64::from(cos);
@@ -145,7 +145,7 @@ proptest! {
     }
 
     #[test]
-    fn draws_are_unit_and_the_phase_positive(u in share(), g in -0.9999_f32..0.9999) {
+    fn draws_are_unit_and_the_phase_positive(u in share(), g in range(-0.9999, 0.9999)) {
         let [cos, rest, sin] = kernels::sample_henyey_greenstein(u, g).map(f64::from);
         prop_assert!((cos + rest - 1.0).abs() <= 2.0 * U && (cos * cos + sin * sin - 1.0).abs() <= 4.0 * U);
         prop_assert!(kernels::henyey_greenstein(cos as f32, g) > 0.0);
@@ -198,7 +198,7 @@ proptest! {
     }
 
     #[test]
-    fn directions_are_drawn_about_the_normal(n in direction(), u in 0.0_f32..1.0, v in 0.0_f32..1.0) {
+    fn directions_are_drawn_about_the_normal(n in direction(), u in range(0.0, 1.0), v in range(0.0, 1.0)) {
         let (x, y) = kernels::basis(n);
         let faults = [x.dot(y), x.dot(n), y.dot(n), x.length() - 1.0, y.length() - 1.0];
         prop_assert!(faults.iter().all(|f| f.abs() <= 4e-7), "{faults:?} at {n:?}");

@@ -148,7 +148,7 @@ proptest! {
     #[test]
     fn a_triangle_is_hit_within_its_corners(
         corners in [vector(-3, 3), vector(-3, 3), vector(-3, 3)],
-        weights in [0.0_f32..1.0, 0.0_f32..1.0],
+        weights in [range(0.0, 1.0), range(0.0, 1.0)],
         way in direction(),
         back in size(-6, 10),
         length in lengths(),
