@@ -18,6 +18,7 @@ mod png_file;
 mod progress;
 mod scale;
 mod sheet;
+mod sound;
 mod stats;
 mod subject;
 mod swarm;
@@ -29,7 +30,7 @@ use std::process::exit;
 /// A command: its name, what follows it, what it does, and the function.
 type Command = (&'static str, &'static str, &'static str, fn(&[String]) -> Result<(), String>);
 
-const COMMANDS: [Command; 9] = [
+const COMMANDS: [Command; 10] = [
     (
         "accuracy",
         "[--quick]",
@@ -46,6 +47,7 @@ const COMMANDS: [Command; 9] = [
     ("sheet", "[--part NAME]", "contact sheets in target/sheets", sheet::run),
     ("capture", "[-o FILE] [--shard I/N]", "frames as y4m, to a file or standard output", capture::run),
     ("stats", "[FRAME] [QUALITY] [WxH]", "counters, time and error of one frame", stats::run),
+    ("sound", "[FILE.wav]...", "loudness, peaks and spectrum of the tune, beside those of files", sound::run),
     ("lights", "", "culled against naive small lights", lights::run),
     ("numbers", "[CASES]", "formulas against the truth, as a page and a plot in docs", numbers::run),
     ("values", "[TABLE]", "frames against the table of their one value", values::run),
