@@ -20,7 +20,8 @@ target/pack/luc-safe, the same program unpacked, and prints what became of each 
                      raw: no compression
   -h, --help         this text
 
-Exit code 1: over 65,536 bytes, or the packed file does something else than the unpacked one.
+Exit code 1: over 65,536 bytes, or it calls the platform's libm, which differs between machines,
+or the packed file does something else than the unpacked one.
 Exit code 2: it can't be built.
 ";
 
@@ -85,6 +86,9 @@ fn pack(arguments: &Arguments) -> Result<Option<String>, Error> {
     write_executable(&safe, &packed.stripped)?;
     write_executable(&file, &packed.file)?;
 
+    if let Some(complaint) = check::libm(&linked)? {
+        return Ok(Some(complaint));
+    }
     let report = Report::new(linked.len(), &packed);
     if arguments.report && !packed.bits.is_empty() {
         print!("{}", report::write(&output, &linked, &packed)?);
