@@ -38,8 +38,11 @@ pub const FRAMES: [(&str, u64); 25] = [
     ("end", 479),     // last frame, which Lúč's first follows
 ];
 
-/// Frames whose fingerprints are kept: part, local frame, preset, size.
-pub const FINGERPRINTS: [(&str, u64, &str, (u32, u32)); 24] = [
+/// Part, local frame, preset, size.
+pub type Frame = (&'static str, u64, &'static str, (u32, u32));
+
+/// Frames whose fingerprints are kept.
+pub const FINGERPRINTS: [Frame; 24] = [
     ("blobs", 12, "draft", (333, 187)),
     ("blobs", 700, "medium", (320, 180)),
     ("blobs", 950, "ultra", (320, 180)),
@@ -66,6 +69,29 @@ pub const FINGERPRINTS: [(&str, u64, &str, (u32, u32)); 24] = [
     ("facets", 1200, "reference", (96, 54)),
 ];
 
+/// Part and local frame of those whose value is kept for all builds, in `values.txt`.
+pub const VALUES: [(&str, u64); 16] = [
+    ("blobs", 200),
+    ("blobs", 600),
+    ("blobs", 1000),
+    ("luc", 120),
+    ("luc", 360),
+    ("luc", 600),
+    ("mirror", 240),
+    ("mirror", 960),
+    ("mirror", 1680),
+    ("gold", 240),
+    ("gold", 720),
+    ("gold", 1680),
+    ("facets", 180),
+    ("facets", 720),
+    ("facets", 1260),
+    ("end", 240),
+];
+
+/// Size of those.
+pub const VALUE_SIZE: (u32, u32) = (480, 270);
+
 /// Where the pictures and `fingerprints.txt` are kept.
 pub fn directory() -> PathBuf {
     PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/golden"))
@@ -81,8 +107,8 @@ pub fn path(part: &str, frame: u64) -> PathBuf {
     directory().join(name(part, frame) + ".png")
 }
 
-/// One line of `fingerprints.txt`.
-pub fn line((part, frame, preset, (width, height)): (&str, u64, &str, (u32, u32)), print: u64) -> String {
+/// One line of `fingerprints.txt` or `values.txt`.
+pub fn line((part, frame, preset, (width, height)): Frame, print: u64) -> String {
     format!("{} {preset} {width}x{height} {print:016x}\n", name(part, frame))
 }
 

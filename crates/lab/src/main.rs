@@ -12,6 +12,7 @@ mod figures;
 mod font;
 mod lights;
 mod metric;
+mod numbers;
 mod plot;
 mod png_file;
 mod progress;
@@ -21,6 +22,7 @@ mod sound;
 mod stats;
 mod subject;
 mod swarm;
+mod values;
 mod view;
 
 use std::process::exit;
@@ -28,7 +30,7 @@ use std::process::exit;
 /// A command: its name, what follows it, what it does, and the function.
 type Command = (&'static str, &'static str, &'static str, fn(&[String]) -> Result<(), String>);
 
-const COMMANDS: [Command; 8] = [
+const COMMANDS: [Command; 10] = [
     (
         "accuracy",
         "[--quick]",
@@ -47,6 +49,8 @@ const COMMANDS: [Command; 8] = [
     ("stats", "[FRAME] [QUALITY] [WxH]", "counters, time and error of one frame", stats::run),
     ("sound", "[FILE.wav]...", "loudness, peaks and spectrum of the tune, beside those of files", sound::run),
     ("lights", "", "culled against naive small lights", lights::run),
+    ("numbers", "[CASES]", "formulas against the truth, as a page and a plot in docs", numbers::run),
+    ("values", "[TABLE]", "frames against the table of their one value", values::run),
 ];
 
 /// The list of commands.
