@@ -158,7 +158,7 @@ pub fn wrap(x: F) -> F {
 #[inline(always)]
 pub fn sin_turns(x: F) -> F {
     let r = wrap(x);
-    let y = r.abs();
+    let y = r & splat(f32::from_bits(0x7fff_ffff));
     let y = min(y, splat(0.5) - y);
     let z = y * y;
     // Written out: compiled for size, `poly` is a loop, and this is the sound's innermost.
