@@ -78,7 +78,7 @@ pub fn build(root: &Path, output: &Path) -> Result<PathBuf, Error> {
     command
         .current_dir(&workspace)
         .args(["build", "--quiet", "--locked", "--package=luc", "--bin=luc", "--profile=intro"])
-        .args(["--no-default-features", "--target", workspace::TARGET])
+        .args(["--no-default-features", "--features=sound", "--target", workspace::TARGET])
         .args(["-Zbuild-std=std,panic_abort", "-Zbuild-std-features=optimize_for_size"])
         .arg("--target-dir")
         .arg(&target_directory)
