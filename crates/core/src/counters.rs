@@ -31,6 +31,8 @@ counters! {
     EndlessTests "tests of cylinders without ends",
     ConeTests "tests of cones",
     TriangleTests "tests of triangles",
+    VoxelTests "tests of voxel grids",
+    VoxelSteps "cells and bricks walked",
     FieldTests "tests of fields",
     FieldSteps "steps to fields",
     FieldOcclusion "ambient occlusion by fields",

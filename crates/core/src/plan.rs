@@ -47,6 +47,8 @@ impl Plan {
             (Counter::EndlessTests, scene.cylinders.iter().any(|s| s.length == f32::INFINITY)),
             (Counter::ConeTests, !scene.cones.is_empty()),
             (Counter::TriangleTests, !scene.triangles.is_empty()),
+            (Counter::VoxelTests, !scene.voxels.is_empty()),
+            (Counter::VoxelSteps, scene.voxels.iter().any(|grid| !grid.materials().is_empty())),
             (Counter::FieldTests, !scene.fields.is_empty()),
             (Counter::FieldSteps, !scene.fields.is_empty()),
             (Counter::FieldOcclusion, !scene.fields.is_empty() && scene.occlusion > 0.0),
@@ -100,7 +102,8 @@ fn materials(scene: &Scene) -> impl Iterator<Item = &Material> {
     let shapes = (0..scene.shape_count()).map(|i| scene.shape(i).material());
     let mixed = scene.fields.iter().flat_map(|field| &field.nodes).map(|node| node.material);
     let meshes = scene.meshes.instances().iter().map(|i| i.material);
-    shapes.chain(mixed).chain(meshes).map(|i| &scene.materials[i])
+    let cells = scene.voxels.iter().flat_map(|grid| grid.materials());
+    shapes.chain(mixed).chain(meshes).chain(cells).map(|i| &scene.materials[i])
 }
 
 /// Named faults of a scene: data that its quality or the engine's limits can't show.

@@ -10,7 +10,7 @@ use super::scatter;
 use super::tile::{Kind, Record, TILE, Tile};
 use super::wave::soft;
 use crate::counters::{Counter, Counters};
-use crate::math::lanes::{F, LANE_INDEX, U, V3, splat, splat_u};
+use crate::math::lanes::{F, LANE_INDEX, TRUE, U, V3, splat, splat_u};
 use crate::quality::Rung;
 use crate::render::Stage;
 use crate::scene::Channel;
@@ -60,7 +60,8 @@ pub(super) fn fill(
     counters.add(counter, count);
     let record = Record::new(kind, cell.size);
 
-    let textured = first.material(stage).is_some_and(|m| m.texture.is_visible());
+    let textured =
+        first.material(stage).is_some_and(|m| m.texture.is_visible()) || first.voxels(stage).is_some();
     // Where the colour itself runs smoothly the exact surface would show the same.
     let smooth = equal || known.colour_error() <= stage.quality.tolerance * 0.25;
     let most = match (smooth, textured) {
@@ -134,26 +135,29 @@ fn small(i: U) -> F {
     F::from_bits(i | splat_u(0x4b00_0000)) - splat(8_388_608.0)
 }
 
-/// Rays through pixels, and where they meet the shape of `first` (0 where they don't).
+/// Rays through pixels, and where they meet the shape of `first` (at its depth where they don't) and
+/// with which id.
 #[inline(never)]
-fn meet(stage: &Stage, first: Sample, px: F, py: F, counters: &mut Counters) -> (Rays8, F) {
+fn meet(stage: &Stage, first: Sample, px: F, py: F, counters: &mut Counters) -> (Rays8, F, F) {
+    let id = splat(first.id());
     let rays = Rays8 { origin: V3::splat(stage.scene.camera.position), direction: stage.directions(px, py) };
     if first.id() < 0.0 {
-        return (rays, splat(f32::INFINITY));
+        return (rays, splat(f32::INFINITY), id);
     }
-    let (t, _) = stage
-        .scene
-        .shape(first.id() as usize >> 2)
-        .span(&rays, splat(f32::INFINITY), &stage.quality, counters)
-        .first();
-    (rays, t.simd_gt(F::ZERO).select(t, splat(first.depth())))
+    let shape = first.id() as usize >> 2;
+    let span = stage.scene.shape(shape).span(&rays, splat(f32::INFINITY), &stage.quality, counters);
+    let (t, part) = span.first();
+    let hit = t.simd_gt(F::ZERO);
+    // Of voxels it knows the very face.
+    let own = hit & first.voxels(stage).map_or(F::ZERO, |_| TRUE);
+    (rays, hit.select(t, splat(first.depth())), own.select(splat(4.0 * shape as f32) + part, id))
 }
 
 /// Albedo of the known shape at pixels.
 fn albedo(stage: &Stage, first: Sample, px: F, py: F, counters: &mut Counters) -> V3 {
     counters.add(Counter::KnownSurfaces, 8);
-    let (rays, t) = meet(stage, first, px, py, counters);
-    let s = surface(stage.scene, &stage.quality, &rays, t, splat(first.id()), splat(stage.pixel));
+    let (rays, t, id) = meet(stage, first, px, py, counters);
+    let s = surface(stage.scene, &stage.quality, &rays, t, id, splat(stage.pixel));
     s.count(counters);
     s.colour(Channel::Colour)
 }
@@ -163,14 +167,14 @@ fn albedo(stage: &Stage, first: Sample, px: F, py: F, counters: &mut Counters) -
 #[inline(never)]
 fn known_surface(stage: &Stage, first: Sample, px: F, py: F, counters: &mut Counters) -> V3 {
     counters.add(Counter::KnownSurfaces, 8);
-    let (rays, t) = meet(stage, first, px, py, counters);
+    let (rays, t, id) = meet(stage, first, px, py, counters);
     let spread = splat(stage.pixel);
     let light = if first.id() <= NONE {
         counters.add(Counter::DiscTests, 8 * stage.scene.background.discs.len());
         counters.add(Counter::Glows, 8 * stage.scene.background.glows.len());
         shade::background(&stage.scene.background, &rays, spread, soft(stage, spread), F::ZERO).0
     } else {
-        let s = surface(stage.scene, &stage.quality, &rays, t, splat(first.id()), spread);
+        let s = surface(stage.scene, &stage.quality, &rays, t, id, spread);
         s.count(counters);
         let mut codes = first.codes();
         let view = -rays.direction;

@@ -2,7 +2,7 @@
 //!
 //! A scene is made anew for each frame by the show's pure functions of time. Shapes of all kinds
 //! share one index space, [`Scene::shape_count`] long: spheres first, then planes, cylinders,
-//! cones, triangles and fields, each in list order. Facets of meshes follow. Right-handed, y up,
+//! cones, triangles, voxels and fields, each in list order. Facets of meshes follow. Right-handed, y up,
 //! world units.
 
 mod background;
@@ -14,6 +14,7 @@ mod material;
 mod shapes;
 mod texture;
 mod track;
+mod voxels;
 
 pub use background::{Background, Disc, Glow, Stop};
 pub use beam::Beam;
@@ -24,6 +25,7 @@ pub use material::{Channel, Fire, Material};
 pub use shapes::{Cone, Cylinder, Plane, Sphere, Triangle};
 pub use texture::{Pattern, Texture};
 pub use track::{Ease, Key, track};
+pub use voxels::{Edit, Voxels};
 
 use crate::mesh::Assembly;
 use glam::Vec3;
@@ -113,6 +115,8 @@ pub struct Scene {
     pub cones: Vec<Cone>,
     /// Single triangles.
     pub triangles: Vec<Triangle>,
+    /// Grids of solid cells; opaque.
+    pub voxels: Vec<Voxels>,
     /// Bodies as signed distance fields.
     pub fields: Vec<Field>,
     /// Distance up to which fields take ambient light from what is near them, world units; 0 for
@@ -161,6 +165,7 @@ impl Scene {
             + self.cylinders.len()
             + self.cones.len()
             + self.triangles.len()
+            + self.voxels.len()
             + self.fields.len()
     }
 }
