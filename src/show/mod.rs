@@ -9,6 +9,8 @@ mod gold;
 mod luc;
 mod mirror;
 mod paint;
+#[cfg(feature = "smoke")]
+mod smoke;
 mod still;
 
 use luc_core::quality::Quality;
@@ -38,6 +40,9 @@ pub const PARTS: &[Part] = &[
     Part { name: "gold", frames: 16 * BAR, scene: gold::scene },
     Part { name: "facets", frames: 12 * BAR, scene: facets::scene },
     Part { name: "blobs", frames: 10 * BAR, scene: blobs::scene },
+    // Last, so that all frames before it are the same without it.
+    #[cfg(feature = "smoke")]
+    Part { name: "smoke", frames: 12 * BAR, scene: smoke::scene },
 ];
 
 /// Length of the whole show in frames; frame n is frame n mod this.

@@ -164,7 +164,7 @@ impl Dop {
     }
 
     /// Bound of the box between two corners, world.
-    fn aligned(view: &View, [lo, hi]: [Vec3; 2]) -> Dop {
+    pub fn aligned(view: &View, [lo, hi]: [Vec3; 2]) -> Dop {
         Dop::cuboid(view, (lo + hi) * 0.5, Mat3::IDENTITY, (hi - lo) * 0.5)
     }
 

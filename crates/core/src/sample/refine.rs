@@ -42,7 +42,7 @@ pub(super) struct Known<'a> {
 impl Cell {
     /// Where sample `i` is: the corners in reading order, then the middle, which is a corner of the
     /// children, and in a cell of one pixel the first corner again.
-    fn point(self, i: usize) -> (usize, usize) {
+    pub(super) fn point(self, i: usize) -> (usize, usize) {
         let (size, i) = if i < 4 { (self.size, i) } else { (self.size / 2, 3) };
         (self.x + (i & 1) * size, self.y + (i >> 1) * size)
     }

@@ -12,6 +12,7 @@ mod field;
 mod light;
 mod material;
 mod shapes;
+mod smoke;
 mod texture;
 mod track;
 mod voxels;
@@ -23,6 +24,7 @@ pub use field::{Field, Form, Join, Node};
 pub use light::{Emitter, Light, LightKind, PointLight};
 pub use material::{Channel, Fire, Material};
 pub use shapes::{Cone, Cylinder, Plane, Sphere, Triangle};
+pub use smoke::{Air, Smoke};
 pub use texture::{Pattern, Texture};
 pub use track::{Ease, Key, track};
 pub use voxels::{Edit, Voxels};
@@ -143,6 +145,8 @@ pub struct Scene {
     pub ambient: [Vec3; 2],
     /// Haze, if the scene has any.
     pub fog: Option<Fog>,
+    /// Smoke that moves, if the scene has any.
+    pub smoke: Option<Smoke>,
     /// Grading of the finished picture.
     pub grade: Grade,
     /// Show how the frame was sampled, on this share of the picture's width from the left.
