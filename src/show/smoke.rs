@@ -19,13 +19,16 @@ const CHIMNEY: u8 = 3;
 const WINDOW: u8 = 4;
 const EMBER: u8 = 5;
 
+/// The last cell: the middle of the window.
+const LAST: [i32; 3] = [19, 5, 20];
+
 /// The front of the fire over seconds: a cell is gone when its own number is over this.
 const FRONT: [Key; 5] = [
-    key(0.0, 47.0, Ease::Smooth),
-    key(3.0, 43.0, Ease::Linear),
-    key(9.0, 26.0, Ease::Linear),
-    key(18.5, 6.0, Ease::Smooth),
-    key(23.0, -9.0, Ease::Step),
+    key(0.0, 42.0, Ease::Smooth),
+    key(4.0, 34.0, Ease::Linear),
+    key(12.0, 19.0, Ease::Linear),
+    key(18.0, 5.0, Ease::Linear),
+    key(23.0, -11.0, Ease::Step),
 ];
 
 /// The house, as it was built.
@@ -73,11 +76,11 @@ fn figure(step: u32) -> Voxels {
         let over = own - front;
         match value {
             0 => Voxels::EMPTY,
-            // The window outlives the rest.
-            WINDOW if over < 24.0 => WINDOW,
-            _ if over > 2.6 => Voxels::EMPTY,
+            // The window outlives the rest, and its middle everything.
+            WINDOW if over < 21.0 || at == LAST => WINDOW,
+            _ if over > 1.5 => Voxels::EMPTY,
             _ if over > 0.0 => Voxels::SMOKE,
-            _ if over > -0.9 => EMBER,
+            _ if over > -0.8 => EMBER,
             _ => value,
         }
     });
@@ -89,18 +92,18 @@ static SMOKE: Smoke = Smoke {
     cell: 0.08,
     size: [64, 72, 40],
     air: Air {
-        density: 0.9,
+        density: 1.8,
         heat: 1.0,
-        lift: 2.2,
-        weight: 0.25,
-        whirl: 9.0,
+        lift: 1.7,
+        weight: 0.2,
+        whirl: 0.4,
         wind: v(0.1, 0.0, -0.05),
-        fade: 0.1,
-        cool: 0.55,
-        drag: 0.12,
+        fade: 0.06,
+        cool: 0.5,
+        drag: 0.2,
         sweeps: 16,
     },
-    extinction: 5.0,
+    extinction: 7.0,
     depth: 0.8,
     albedo: Vec3::ONE,
     phase: [0.55, 0.55, -0.2],
@@ -133,7 +136,7 @@ static STILL: Still = Still {
         surface(v(0.3, 0.075, 0.035), 0.6, 0.0),
         surface(v(0.22, 0.12, 0.1), 0.6, 0.0),
         Material { emission: times(v(1.0, 0.6, 0.2), 4.2), ..Material::DEFAULT },
-        Material { emission: times(v(1.0, 0.3, 0.05), 1.6), ..Material::DEFAULT },
+        Material { emission: times(v(1.0, 0.15, 0.015), 1.2), ..Material::DEFAULT },
     ],
     lights: &[
         Lamp {
@@ -176,8 +179,8 @@ pub fn scene(frame: u64) -> Scene {
     scene.smoke = Some(Smoke { steps, behind: (frame & 1) as f32 * 0.5, ..SMOKE });
     scene.voxels = vec![figure(steps)];
     let way = t / 24.0;
-    let target = v(0.75, 1.5 + 0.6 * way, 0.0);
-    let position = orbit(-0.0545 + 0.0695 * way, 9.24, 1.55 + 0.85 * way);
+    let target = v(0.7, 1.5 + 0.25 * way, 0.0);
+    let position = orbit(-0.0545 + 0.042 * way, 9.24, 1.55 + 0.6 * way);
     scene.camera = Camera { position, target, roll: degrees(1.5), fov: degrees(43.0) };
     let breath = 1.0 + 0.08 * swing(t, 4.0, 0.0);
     for light in &mut scene.lights {

@@ -10,7 +10,7 @@ use std::path::PathBuf;
 pub const SIZE: (u32, u32) = (320, 180);
 
 /// Part and local frame of the kept pictures.
-pub const FRAMES: [(&str, u64); 22] = [
+pub const FRAMES: [(&str, u64); 24] = [
     ("blobs", 0),     // the drop: the lattice closed
     ("blobs", 400),   // satellites fly
     ("blobs", 1199),  // last frame
@@ -33,10 +33,12 @@ pub const FRAMES: [(&str, u64); 22] = [
     ("facets", 300),  // bays grow
     ("facets", 640),  // all has grown, in shafts of light
     ("facets", 1439), // last frame: the vault
+    ("smoke", 0),     // the house before the fire
+    ("smoke", 421),   // between two steps: the first smoke
 ];
 
 /// Frames whose fingerprints are kept: part, local frame, preset, size.
-pub const FINGERPRINTS: [(&str, u64, &str, (u32, u32)); 22] = [
+pub const FINGERPRINTS: [(&str, u64, &str, (u32, u32)); 26] = [
     ("blobs", 12, "draft", (333, 187)),
     ("blobs", 700, "medium", (320, 180)),
     ("blobs", 950, "ultra", (320, 180)),
@@ -59,7 +61,16 @@ pub const FINGERPRINTS: [(&str, u64, &str, (u32, u32)); 22] = [
     ("facets", 480, "medium", (320, 180)),
     ("facets", 900, "ultra", (320, 180)),
     ("facets", 1200, "reference", (96, 54)),
+    ("smoke", 300, "ultra", (320, 180)),
+    ("smoke", 420, "reference", (96, 54)),
+    ("smoke", 700, "medium", (320, 180)),
+    ("smoke", 1439, "draft", (333, 187)),
 ];
+
+/// Whether a part is in the 64 kB file too.
+pub fn in_every_build(part: &str) -> bool {
+    part != "smoke"
+}
 
 /// Where the pictures and `fingerprints.txt` are kept.
 pub fn directory() -> PathBuf {

@@ -184,13 +184,14 @@ impl Voxels {
         });
     }
 
-    /// The values of the cells that hold points, given in cells from the corner.
+    /// The values of the solid cells that hold points, given in cells from the corner; 0 elsewhere.
     pub fn values(&self, cells: V3) -> F {
         let [x, y, z] = [cells.x, cells.y, cells.z].map(|c| c.to_array());
         let mut values = F::ZERO;
         for (lane, value) in values.as_mut_array().iter_mut().enumerate() {
             // Casts keep to the range of i32, and turn NaN into 0.
-            *value = self.get([x[lane], y[lane], z[lane]].map(|c| c.floor() as i32)).into();
+            let found = self.get([x[lane], y[lane], z[lane]].map(|c| c.floor() as i32));
+            *value = if Self::is_solid(found) { found.into() } else { 0.0 };
         }
         values
     }

@@ -69,7 +69,7 @@ impl Volume {
         let behind = if smoke.steps > 0 { smoke.behind } else { 0.0 };
         grid.rows(&mut self.density, &|_, at, out| {
             for (i, out) in (at..).zip(out) {
-                let [a, b] = [now, before].map(|cells| cells[i].as_array()[DENSITY]);
+                let [a, b] = [now, before].map(|cells| cells[i][DENSITY]);
                 *out = a + (b - a) * behind;
             }
         });
@@ -93,7 +93,7 @@ impl Volume {
                 let x = splat(along(8 * k, 0)) + RAMP * splat(smoke.cell);
                 let p = V3::new(x, splat(along(y, 1)), splat(along(z, 2)));
                 let to_eye = (V3::splat(eye) - p).normalize();
-                let heat = F::new(std::array::from_fn(|i| now[at + i].as_array()[TEMPERATURE]));
+                let heat = F::new(std::array::from_fn(|i| now[at + i][TEMPERATURE]));
                 let mut light = V3::splat(smoke.ambient) + V3::splat(smoke.glow) * heat;
                 for (lamp, through) in lamps.iter().zip(through) {
                     let way = V3::splat(lamp.position) - p;

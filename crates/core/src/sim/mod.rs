@@ -13,10 +13,9 @@ mod tests;
 
 pub use grid::Grid;
 pub use light::Volume;
-pub use state::{DENSITY, FASTEST, Kind, Room, State, TEMPERATURE};
+pub use state::{Cell, DENSITY, FASTEST, Kind, Room, State, TEMPERATURE};
 
 use crate::counters::Counters;
-use crate::math::lanes::F;
 use crate::scene::Smoke;
 
 /// Steps between states that are kept.
@@ -63,7 +62,7 @@ impl Simulation {
     }
 
     /// The cells a step before.
-    pub fn before(&self) -> &[F] {
+    pub fn before(&self) -> &[Cell] {
         &self.room.before
     }
 

@@ -1,10 +1,11 @@
 //! The air and smoke of a grid, and one step of their motion.
 //!
-//! A cell's values are the lanes of one vector, so the eight neighbours that a point lies between are
-//! eight loads for all of them. A step: forces and transport along the velocity (semi-Lagrangian, Stam
-//! 1999), with vorticity confinement (Fedkiw, Stam and Jensen 2001); then the pressure that takes the
-//! divergence away, by a fixed number of Jacobi sweeps that begin where the last step's ended.
-//! Velocities are in cells per step.
+//! A cell's values stand side by side and are loaded into the lanes of one vector, so the eight
+//! neighbours that a point lies between are eight loads for all of them. A step: forces and transport
+//! along the velocity (semi-Lagrangian, Stam 1999; mended by half of what going there and back changes,
+//! within the values it came from: MacCormack's method, Selle et al. 2008), with vorticity confinement
+//! (Fedkiw, Stam and Jensen 2001); then the pressure that takes the divergence away, by a fixed number
+//! of Jacobi sweeps that begin where the last step's ended. Velocities are in cells per step.
 
 use super::grid::Grid;
 use crate::counters::{Counter, Counters};
@@ -17,11 +18,14 @@ pub const DENSITY: usize = 3;
 /// See [`DENSITY`].
 pub const TEMPERATURE: usize = 4;
 
+/// A cell's values: velocity, density, temperature.
+pub type Cell = [f32; 5];
+
 /// Greatest velocity along an axis, cells per step.
 pub const FASTEST: f32 = 4.0;
 
 /// Values nearer to 0 are 0: no motion to be seen, no smoke, and never a subnormal number.
-const LEAST: f32 = 1e-7;
+const LEAST: f32 = 1e-5;
 
 /// Share of the last step's pressure that the next begins with. Under 1, so that it can't drift in
 /// closed rooms, whose pressure nothing determines.
@@ -46,7 +50,7 @@ pub enum Kind {
 #[derive(Clone, Default)]
 pub struct State {
     /// The values of each cell.
-    pub cells: Vec<F>,
+    pub cells: Vec<Cell>,
     /// Pressure.
     pub pressure: Vec<f32>,
 }
@@ -55,7 +59,9 @@ pub struct State {
 #[derive(Default)]
 pub struct Room {
     /// The step before.
-    pub before: Vec<F>,
+    pub before: Vec<Cell>,
+    /// What transport brings before it is mended.
+    first: Vec<Cell>,
     /// What each cell is.
     pub kinds: Vec<Kind>,
     figure: Voxels,
@@ -70,7 +76,7 @@ pub struct Room {
 impl State {
     /// Still air.
     pub fn new(grid: Grid) -> Self {
-        State { cells: vec![F::ZERO; grid.len()], pressure: vec![0.0; grid.len()] }
+        State { cells: vec![[0.0; 5]; grid.len()], pressure: vec![0.0; grid.len()] }
     }
 
     /// Goes one step on, among `figure`.
@@ -95,15 +101,25 @@ impl State {
                 *out = (x * x + y * y + z * z).sqrt();
             }
         });
-        let (whirls, motion) = (&room.scalars, Motion::of(air, smoke.cell));
+        grid.rows(&mut room.first, &|place, at, out| {
+            for (i, out) in out.iter_mut().enumerate() {
+                let place = [place[0] + i, place[1], place[2]];
+                *out = cut(transport(cells, values(cells, at + i), F::ONE, grid, place).0);
+            }
+        });
+        let (whirls, first, motion) = (&room.scalars, &room.first, Motion::of(air, smoke.cell));
         grid.rows(&mut room.before, &|place, at, out| {
             for (i, out) in out.iter_mut().enumerate() {
                 *out = match kinds[at + i] {
-                    Kind::Solid => F::ZERO,
+                    Kind::Solid => [0.0; 5],
                     kind => {
                         let place = [place[0] + i, place[1], place[2]];
+                        let old = values(cells, at + i);
+                        let (_, least, most) = transport(cells, old, F::ONE, grid, place);
+                        let (back, ..) = transport(first, old, -F::ONE, grid, place);
+                        let mended = values(first, at + i) + (old - back) * splat(0.5);
                         let force = motion.confine(cells, whirls, [1, row, slice], at + i);
-                        motion.apply(transport(cells, grid, place, at + i), force, kind)
+                        motion.apply(mended.fast_max(least).fast_min(most), force, kind)
                     }
                 };
             }
@@ -112,7 +128,7 @@ impl State {
 
         let cells = &self.cells;
         grid.rows(&mut room.scalars, &|_, at, out| {
-            let speed = |i: usize, axis: usize| cells[i].as_array()[axis];
+            let speed = |i: usize, axis: usize| cells[i][axis];
             for (i, out) in (at..).zip(out) {
                 let x = speed(i + 1, 0) - speed(i - 1, 0);
                 let y = speed(i + row, 1) - speed(i - row, 1);
@@ -145,8 +161,10 @@ impl State {
                 // A wall has the pressure of the cell beside it.
                 let at = |j: usize| if share[j] == 0.0 { pressure[i] } else { pressure[j] };
                 let slope = |step: usize| 0.5 * (at(i + step) - at(i - step));
-                let push = F::new([slope(1), slope(row), slope(slice), 0.0, 0.0, 0.0, 0.0, 0.0]);
-                *out = quiet(*out - push);
+                for (speed, step) in out.iter_mut().zip([1, row, slice]) {
+                    let new = *speed - slope(step);
+                    *speed = if new.abs() > LEAST { new } else { 0.0 };
+                }
             }
         });
     }
@@ -158,27 +176,50 @@ fn quiet(v: F) -> F {
     v & v.abs().simd_gt(splat(LEAST))
 }
 
-/// Rotation of the velocity about a cell, times two.
+/// The values of a cell; in the lanes after them are others.
 #[inline(always)]
-fn curl(cells: &[F], [x, y, z]: [usize; 3], i: usize) -> [f32; 3] {
-    let across = |step: usize| cells[i + step] - cells[i - step];
-    let (dx, dy, dz) = (across(x), across(y), across(z));
-    let (dx, dy, dz) = (dx.as_array(), dy.as_array(), dz.as_array());
-    [dy[2] - dz[1], dz[0] - dx[2], dx[1] - dy[0]]
+fn values(cells: &[Cell], i: usize) -> F {
+    load(&cells.as_flattened()[5 * i..])
 }
 
-/// What comes to the cell at `place` from where it was a step ago.
+/// The lanes that are a cell's values.
 #[inline(always)]
-fn transport(cells: &[F], grid: Grid, place: [usize; 3], i: usize) -> F {
-    let speed = cells[i].to_array();
-    let [_, row_step, slice] = grid.steps();
-    let from = |axis: usize| (place[axis] + 1) as f32 - speed[axis];
-    let (cell, within) = grid.corner([from(0), from(1), from(2)]);
-    let (base, within) = (grid.bordered(cell), within.map(splat));
+fn cut(v: F) -> Cell {
+    v.as_array().first_chunk().copied().unwrap_or_default()
+}
+
+/// Rotation of the velocity about a cell, times two.
+#[inline(always)]
+fn curl(cells: &[Cell], [x, y, z]: [usize; 3], i: usize) -> [f32; 3] {
+    let across = |step: usize, axis: usize| cells[i + step][axis] - cells[i - step][axis];
+    [across(y, 2) - across(z, 1), across(z, 0) - across(x, 2), across(x, 1) - across(y, 0)]
+}
+
+/// What `field` is where the air of the cell at `place` was a step ago (or will be after `time` steps less
+/// one), and the least and greatest of the values it lies between.
+#[inline(always)]
+fn transport(field: &[Cell], speed: F, time: F, grid: Grid, place: [usize; 3]) -> (F, F, F) {
+    let [_, row, slice] = grid.steps();
+    let lanes = |v: [usize; 3]| F::new(std::array::from_fn(|i| v.get(i).map_or(0.0, |v| *v as f32)));
+    let (place, size) = (lanes(place) + F::ONE, lanes(grid.size));
+    // Bounded before it becomes a whole number.
+    let from = (place - speed * time).fast_max(F::ZERO).fast_min(size + F::ONE);
+    let below = from.fast_min(size).fast_trunc_int();
+    let within = from - F::from_i32x8(below);
+    let below = below.as_array();
+    let base = grid.bordered([0, 1, 2].map(|axis| below[axis] as usize));
+    let within = [0, 1, 2].map(|axis| splat(within.as_array()[axis]));
+    let lines = [0, row, slice, row + slice].map(|step| {
+        let (a, b) = (values(field, base + step), values(field, base + step + 1));
+        (a + (b - a) * within[0], a.fast_min(b), a.fast_max(b))
+    });
     let between = |a: F, b: F, t: F| a + (b - a) * t;
-    let row = |i: usize| between(cells[i], cells[i + 1], within[0]);
-    let sheet = |i: usize| between(row(i), row(i + row_step), within[1]);
-    between(sheet(base), sheet(base + slice), within[2])
+    let [a, b, c, d] = lines;
+    (
+        between(between(a.0, b.0, within[1]), between(c.0, d.0, within[1]), within[2]),
+        a.1.fast_min(b.1).fast_min(c.1.fast_min(d.1)),
+        a.2.fast_max(b.2).fast_max(c.2.fast_max(d.2)),
+    )
 }
 
 /// What the air's constants make of a step, in cells and steps.
@@ -212,7 +253,7 @@ impl Motion {
 
     /// Push that keeps a whirl turning: across the way to where it is stronger.
     #[inline(always)]
-    fn confine(&self, cells: &[F], whirls: &[f32], steps: [usize; 3], i: usize) -> [f32; 3] {
+    fn confine(&self, cells: &[Cell], whirls: &[f32], steps: [usize; 3], i: usize) -> [f32; 3] {
         if self.whirl == 0.0 || whirls[i] < CALM {
             return [0.0; 3];
         }
@@ -224,7 +265,7 @@ impl Motion {
 
     /// The values of a cell after forces, losses and sources.
     #[inline(always)]
-    fn apply(&self, values: F, force: [f32; 3], kind: Kind) -> F {
+    fn apply(&self, values: F, force: [f32; 3], kind: Kind) -> Cell {
         let mut v = (values * self.keep).to_array();
         if kind == Kind::Source {
             v[DENSITY] = v[DENSITY].max(self.source[0]);
@@ -235,7 +276,7 @@ impl Motion {
             v[axis] += force[axis] + self.wind[axis] * density;
         }
         v[1] += self.lift * heat - self.weight * density;
-        quiet(F::new(v).fast_max(self.least).fast_min(self.most))
+        cut(quiet(F::new(v).fast_max(self.least).fast_min(self.most)))
     }
 }
 
@@ -247,6 +288,7 @@ impl Room {
             kinds: vec![Kind::Air; grid.len()],
             share: vec![1.0; grid.len()],
             scalars: still.pressure.clone(),
+            first: still.cells.clone(),
             before: still.cells,
             pressure: still.pressure,
             figure: Voxels::default(),
