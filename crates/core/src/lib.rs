@@ -10,7 +10,8 @@
 //! (triangles of a [`mesh`] by its tree, [`bvh`]), with [`cull`] leaving out what
 //! can't matter → [`shade`] lights it → [`post`] makes pixels, [`output`] files. [`math`] has
 //! everything that would differ between machines, [`parallel`] spreads work over threads,
-//! [`counters`] say what a frame did, [`features`] what an executable can do.
+//! [`counters`] say what a frame did, [`features`] what an executable can do, and [`kernels`] open
+//! each formula to one ray.
 //!
 //! ```
 //! use luc_core::{quality::Quality, render::Renderer, scene::*};
@@ -34,6 +35,7 @@ pub mod bvh;
 pub mod counters;
 pub mod cull;
 pub mod features;
+pub mod kernels;
 pub mod math;
 pub mod mesh;
 pub mod output;

@@ -7,13 +7,16 @@
 //!
 //! * [`scalar`]: `sin`, `exp`, `pow`, … for one number, computed in f64 and rounded once.
 //! * [`lanes`]: eight numbers side by side ([`lanes::F`]), and vectors of them ([`lanes::V3`]).
+//! * [`lanes_f64`]: formulas for eight numbers in f64, rounded once.
 //! * [`lanes_fn`]: the elementary functions for eight numbers, in f32.
 //! * [`hash`]: random numbers as a pure function of pixel, frame and dimension.
 
 pub mod hash;
 pub mod lanes;
+pub mod lanes_f64;
 pub mod lanes_fn;
 pub mod noise;
+pub mod quadratic;
 pub mod sampling;
 pub mod scalar;
 

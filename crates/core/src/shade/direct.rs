@@ -90,6 +90,15 @@ fn phong(s: &Surface, l: V3, v: V3, n_l: F) -> V3 {
     s.colour(Channel::Specular) * pow(rv.fast_max(F::ZERO), s.value(Channel::Exponent))
 }
 
+/// pi D of microfacets whose normals have this cosine, over 0, and squared sine, to the surface's, for an rms
+/// slope of `m`.
+#[inline(always)]
+pub fn beckmann(sine2: F, cos: F, m: F) -> F {
+    let c2 = cos * cos;
+    let m2 = m * m;
+    exp(-(sine2 / (c2 * m2))) / (m2 * c2 * c2)
+}
+
 /// Cook and Torrance's highlight pi D F G / (4 n·v), the cosine n·l included and cancelled.
 ///
 /// Beckmann: D = exp(-tan²/m²) / (pi m² c⁴), 0 at grazing; V-cavities:
@@ -105,9 +114,7 @@ fn cook_torrance(s: &Surface, l: V3, v: V3, n_l: F) -> V3 {
     let n_h = n.dot(h).fast_max(splat(1e-4));
     let v_h = (length * splat(0.5)).fast_max(splat(1e-4));
     let m = s.value(Channel::Roughness).fast_max(splat(1e-3));
-    let c2 = n_h * n_h;
-    let m2 = m * m;
-    let d = exp(-(n.cross(h).dot(n.cross(h)) / (c2 * m2))) / (m2 * c2 * c2);
+    let d = beckmann(n.cross(h).dot(n.cross(h)), n_h, m);
     let two_c = n_h + n_h;
     let g = (F::ONE / n_v).fast_min(two_c / v_h).fast_min(two_c * n_l / (v_h * n_v));
     schlick(s.colour(Channel::F0), splat(1.0), v_h) * s.colour(Channel::Specular) * (d * g * splat(0.25))

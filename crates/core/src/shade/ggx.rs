@@ -14,7 +14,7 @@ use std::f32::consts::TAU;
 
 /// π D of microfacets whose normals have this cosine, and squared sine, to the surface's.
 #[inline(always)]
-fn distribution(sine2: F, cos: F, alpha: F) -> F {
+pub fn distribution(sine2: F, cos: F, alpha: F) -> F {
     // Divided before it is squared: 8 u at most, of 11 u the other way.
     let q = sine2 / alpha + alpha * cos * cos;
     F::ONE / (q * q)
@@ -26,9 +26,16 @@ fn smith(cos: F, alpha: F) -> F {
     (alpha * alpha * ((F::ONE - cos) * (F::ONE + cos)) + cos * cos).sqrt()
 }
 
+/// Share of the facets that is seen under this cosine, Smith's G1.
+#[inline(always)]
+pub fn masking(cos: F, alpha: F) -> F {
+    let whole = cos + smith(cos, alpha);
+    whole.simd_gt(F::ZERO) & ((cos + cos) / whole)
+}
+
 /// V for these cosines; 0 where both are 0. The same both ways, bit for bit.
 #[inline(always)]
-fn visibility(n_l: F, n_v: F, alpha: F) -> F {
+pub fn visibility(n_l: F, n_v: F, alpha: F) -> F {
     let whole = n_l * smith(n_v, alpha) + n_v * smith(n_l, alpha);
     // Cosines under 1e-30 would overflow; the light they bring is nothing.
     whole.simd_gt(F::ZERO) & (splat(0.5) / whole.fast_max(splat(1e-30)))

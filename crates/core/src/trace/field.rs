@@ -20,25 +20,51 @@ pub type Nodes = [F; Field::MOST];
 /// where two join, and less than one where more do.
 const REACH: f32 = 1.25;
 
-/// Folds space into the cell about the origin; every other cell is mirrored.
+/// The cell of `side` that `x` lies in, at most `most` from the middle one, and where in it.
+///
+/// An error of the cell's number, by rounding at a border, leaves the offset u |x| beyond the cell.
+#[inline(always)]
+pub fn repeated(x: F, side: f32, most: f32) -> (F, F) {
+    let at = (x * splat(1.0 / side) + splat(0.5)).floor();
+    let at = at.fast_max(splat(-most)).fast_min(splat(most));
+    (at, x - at * splat(side))
+}
+
+/// Folds an axis into the cell about 0, every other cell mirrored; a side of 0 leaves it as it is.
+#[inline(always)]
+pub fn folded(x: F, side: f32, most: f32) -> F {
+    if side <= 0.0 {
+        return x;
+    }
+    let (at, offset) = repeated(x, side, most);
+    let odd = at - (at * splat(0.5)).floor() * splat(2.0);
+    offset * (F::ONE - (odd + odd))
+}
+
+/// Folds space into the cell about the origin.
 #[inline(never)]
-fn folded(field: &Field, p: V3) -> V3 {
-    let axis = |x: F, side: f32, most: f32| {
-        if side <= 0.0 {
-            return x;
-        }
-        let at = (x * splat(1.0 / side) + splat(0.5)).floor();
-        let at = at.fast_max(splat(-most)).fast_min(splat(most));
-        let odd = at - (at * splat(0.5)).floor() * splat(2.0);
-        (x - at * splat(side)) * (F::ONE - (odd + odd))
-    };
+fn cell(field: &Field, p: V3) -> V3 {
     let (cell, copies) = (field.cell, field.copies);
-    V3::new(axis(p.x, cell.x, copies.x), axis(p.y, cell.y, copies.y), axis(p.z, cell.z, copies.z))
+    V3::new(folded(p.x, cell.x, copies.x), folded(p.y, cell.y, copies.y), folded(p.z, cell.z, copies.z))
+}
+
+/// The quadratic smooth minimum min - (k - |a - b|)² / 4k (Quilez), and the weight of the larger
+/// number's gradient in it, up to ½; the plain minimum, bit for bit, where |a - b| >= k or k is 0.
+#[inline(always)]
+pub fn smooth_min(a: F, b: F, k: f32) -> (F, F) {
+    let mut least = a.fast_min(b);
+    let mut h = F::ZERO;
+    if k > 0.0 {
+        h = (splat(k) - (a - b).abs()).fast_max(F::ZERO);
+        least -= h * h * splat(0.25 / k);
+        h *= splat(0.5 / k);
+    }
+    (least, h)
 }
 
 /// Distance from a node's form, in its own place.
 #[inline(always)]
-fn form(node: &Node, p: V3) -> F {
+pub fn form(node: &Node, p: V3) -> F {
     let mut p = p - V3::splat(node.centre);
     if let Some(axes) = node.axes {
         let [x, y, z] = axes.to_cols_array_2d().map(|c| p.dot(V3::splat(c.into())));
@@ -82,7 +108,7 @@ fn form(node: &Node, p: V3) -> F {
 /// each node is in it; they sum to 1.
 #[inline(never)]
 pub fn distance(field: &Field, p: V3, near: &Nodes, mut shares: Option<&mut Nodes>) -> F {
-    let inner = if field.cell == Vec3::ZERO { p } else { folded(field, p) };
+    let inner = if field.cell == Vec3::ZERO { p } else { cell(field, p) };
     let mut sum = INFINITY;
     for (i, (node, &near)) in field.nodes.iter().zip(near).enumerate() {
         if !near.any() {
@@ -99,14 +125,7 @@ pub fn distance(field: &Field, p: V3, near: &Nodes, mut shares: Option<&mut Node
                 continue;
             }
         };
-        let mut least = a.fast_min(b);
-        let mut h = F::ZERO;
-        if node.blend > 0.0 {
-            let k = splat(node.blend);
-            h = (k - (a - b).abs()).fast_max(F::ZERO);
-            least -= h * h * splat(0.25 / node.blend);
-            h *= splat(0.5 / node.blend);
-        }
+        let (least, h) = smooth_min(a, b, node.blend);
         sum = if node.join == Join::Union { least } else { -least };
         if let Some(shares) = &mut shares {
             let h = if node.mix { h } else { F::ZERO };

@@ -21,7 +21,7 @@ pub(crate) mod check;
 #[cfg(test)]
 mod tests;
 
-pub use field::{ambient_share, distance, field};
+pub use field::{ambient_share, distance, field, folded, form, repeated, smooth_min};
 pub use hit::{Hits, NONE, nearest};
 pub use occlusion::{BLOCKED, occlusion};
 pub use plane::plane;

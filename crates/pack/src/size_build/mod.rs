@@ -35,6 +35,23 @@ const RUSTFLAGS: &[&str] = &[
     "-Zpre-link-arg=-Wl,--no-as-needed",
     "-Zpre-link-arg=-lm",
     "-Zpre-link-arg=-Wl,--as-needed",
+    // The basic register allocator never splits a live range: fewer moves and more equal code for the packer,
+    // 2,400 bytes, for no more instructions executed.
+    "-Cllvm-args=-regalloc=basic",
+    // Address arithmetic as the plain instructions it was (720 bytes); loops with the induction variables they
+    // were written with (360); instructions in their order (250); blocks laid out for size (200).
+    "-Cllvm-args=-disable-x86-lea-opt",
+    "-Cllvm-args=-disable-lsr",
+    "-Cllvm-args=-enable-misched=0",
+    "-Cllvm-args=-enable-ext-tsp-block-placement",
+    "-Cllvm-args=-apply-ext-tsp-for-size",
+    // Nothing done twice to do it sooner (430 bytes together), and no upper halves cleared: all code is AVX's (160).
+    "-Cllvm-args=-x86-disable-avoid-SFB",
+    "-Cllvm-args=-disable-early-taildup",
+    "-Cllvm-args=-disable-machine-licm",
+    "-Cllvm-args=-enable-pre=0",
+    "-Cllvm-args=-enable-load-pre=0",
+    "-Cllvm-args=-x86-use-vzeroupper=0",
     // Warnings are for the ordinary build, which sees the same code.
     "--cap-lints=allow",
 ];

@@ -24,6 +24,7 @@ fn worst(name: &str, domain: impl Fn(f32) -> bool, f: fn(F) -> F, reference: fn(
 fn exponentials_and_logarithm_are_as_exact_as_stated() {
     assert!(worst("lanes exp2", |x| (-126.0..129.0).contains(&x), exp2, f64::exp2) <= 1.2);
     assert!(worst("lanes exp", |x| (-87.33..89.0).contains(&x), exp, f64::exp) <= 1.4);
+    assert!(worst("lanes exp_m1", |x| (-200.0..89.0).contains(&x), exp_m1, f64::exp_m1) <= 2.5);
     assert!(worst("lanes log2", |x| (f32::MIN_POSITIVE..=f32::MAX).contains(&x), log2, f64::log2) <= 3.0);
     let mut near_one = Worst::new("lanes log2 near 1");
     for i in -20_000..20_000 {
@@ -94,6 +95,11 @@ fn edge_values_are_as_documented() {
     {
         assert_eq!(at(exp, x), y, "exp({x})");
     }
+    for (x, y) in
+        [(0.0, 0.0), (1e-45, 1e-45), (1e-20, 1e-20), (88.73, inf), (-30.0, -1.0), (-inf, -1.0), (nan, -1.0)]
+    {
+        assert_eq!(at(exp_m1, x), y, "exp_m1({x})");
+    }
     assert!(at(exp, 88.72283).is_finite() && at(exp2, 127.99999).is_finite() && at(exp, -87.33) > 0.0);
     for (x, y) in [(0.0, -inf), (-0.0, -inf), (1e-40, -inf), (-1.0, -inf), (nan, -inf), (inf, 128.0)] {
         assert_eq!(at(log2, x), y, "log2({x})");
@@ -130,8 +136,16 @@ fn edge_values_are_as_documented() {
 }
 
 /// The functions under test with one argument.
-const FUNCTIONS: [fn(F) -> F; 7] =
-    [exp2, exp, log2, |x| sin_cos(x).0, |x| sin_cos(x).1, |x| pow(x, splat(0.41)), |x| pow(splat(1.7), x)];
+const FUNCTIONS: [fn(F) -> F; 8] = [
+    exp2,
+    exp,
+    log2,
+    |x| sin_cos(x).0,
+    |x| sin_cos(x).1,
+    |x| pow(x, splat(0.41)),
+    |x| pow(splat(1.7), x),
+    exp_m1,
+];
 
 #[test]
 fn a_lane_does_not_depend_on_the_others() {
@@ -167,7 +181,8 @@ fn bits_are_the_same_in_every_build() {
             0x31fdf656f9ad4544,
             0x23c06292863dad7b,
             0x3cbb5cc5963c10aa,
-            0x190a58f99422bd94
+            0x190a58f99422bd94,
+            0x86897210dd9f2818,
         ],
         "{got:#x?}"
     );

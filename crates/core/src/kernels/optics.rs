@@ -1,0 +1,37 @@
+//! How one ray splits at a surface.
+
+use super::first;
+use crate::math::lanes::{V3, splat};
+use crate::shade::{self, dielectric};
+use glam::Vec3;
+
+/// Schlick's reflectance f0 + (1 - f0)(1 - cos)⁵, the cosine clamped to 0..=1. Error at most 4 ulp.
+pub fn schlick(f0: f32, cos: f32) -> f32 {
+    first(shade::schlick(V3::splat(Vec3::splat(f0)), splat(1.0), splat(cos)).x)
+}
+
+/// Share of unpolarised light that a clear body mirrors: see [`dielectric::reflectance`]. Error at most 1 ulp.
+pub fn fresnel(cos: f32, n_i: f32, n_t: f32) -> f32 {
+    first(dielectric::reflectance(splat(cos), splat(n_i), splat(n_t)))
+}
+
+/// Cosine of the refracted angle: see [`dielectric::cos_refracted`]. Error at most 1 ulp.
+pub fn cos_refracted(cos: f32, n_i: f32, n_t: f32) -> f32 {
+    first(dielectric::cos_refracted(splat(cos), splat(n_i), splat(n_t)))
+}
+
+/// Whether all light is mirrored: see [`dielectric::is_total`]. Exact.
+pub fn is_total(cos: f32, n_i: f32, n_t: f32) -> bool {
+    first(dielectric::is_total(splat(cos), splat(n_i), splat(n_t))).to_bits() != 0
+}
+
+/// Unit direction in which a ray of unit direction `d` goes on behind a surface with unit normal `n`, which
+/// looks towards it; `None` under total internal reflection. `eta` is the refractive index on the ray's side over
+/// that behind.
+///
+/// Error at most 4 u (1 + eta²)(1 + 1 / cosine behind).
+pub fn refract(d: Vec3, n: Vec3, eta: f32) -> Option<Vec3> {
+    let (d, n) = (V3::splat(d), V3::splat(n));
+    let found = shade::refract(n, d, -d.dot(n), splat(eta));
+    (first(found.total).to_bits() == 0).then(|| found.direction.lane(0))
+}
