@@ -10,11 +10,12 @@ use super::grid::Grid;
 use super::state::{DENSITY, Kind, TEMPERATURE};
 use crate::counters::{Counter, Counters};
 use crate::math::lanes::{F, RAMP, V3, load, splat};
-use crate::math::lanes_fn::exp;
 use crate::math::scalar;
 use crate::parallel;
 use crate::scene::Smoke;
 use crate::shade::Lamp;
+use crate::shade::extinction::Depth;
+use crate::shade::phase::phase;
 use crate::trace::Rays8;
 use glam::Vec3;
 
@@ -27,6 +28,9 @@ pub const OPAQUE: f32 = 1.0 / 512.0;
 
 /// Steps of a ray, at most: more than there are in any grid.
 const MOST_STEPS: u32 = 1024;
+
+/// Steradians all around, by which even scattering is 1.
+const SPHERE: f32 = 4.0 * std::f32::consts::PI;
 
 /// Light that comes to a cell from a lamp: past the smoke, and past the solid cells too.
 type Through = [f32; 2];
@@ -101,7 +105,7 @@ impl Volume {
                     let l = way * (F::ONE / d2.sqrt());
                     let cos = -l.dot(to_eye);
                     let turned = splat(weight) * phase(g, cos) + splat(1.0 - weight) * phase(other, cos);
-                    let mut reach = lamp.lobe(-l) * turned * splat(smoke.gain) / d2;
+                    let mut reach = lamp.lobe(-l) * turned * splat(smoke.gain * SPHERE) / d2;
                     if !through.is_empty() {
                         reach *= F::new(std::array::from_fn(|i| through[at + i][1]));
                     }
@@ -167,7 +171,7 @@ impl Volume {
         let origin = (rays.origin - V3::splat(self.lo)) * scale;
         let direction = rays.direction * scale;
         let step = splat(pace * self.cell);
-        let mut depth = F::ZERO;
+        let mut depth = Depth::default();
         let [_, row, slice] = self.grid.steps();
         let [bx, by, _] = self.brick_counts();
         for k in 0..MOST_STEPS {
@@ -206,8 +210,8 @@ impl Volume {
             }
             let [sigma, r, g, b] = found;
             let taken = busy & (sigma * length);
-            depth += taken;
-            let through = exp(-depth);
+            depth.add(taken);
+            let through = depth.through();
             // The light of a step as it is dimmed on its way through it.
             let share = (seen.0 - through) / taken.fast_max(splat(1e-9)) * length;
             seen.1 += V3::new(r, g, b) * (busy & share);
@@ -293,14 +297,6 @@ fn shine(grid: Grid, density: &[f32], kinds: &[Kind], lamp: Vec3, thickness: f32
             }
         }
     }
-}
-
-/// Phase function of Henyey and Greenstein (1941) relative to that of even scattering, for the cosine of
-/// the angle by which light turns: (1 - g²) / d^1.5 with d = (1 - g)² + 2 g (1 - cos).
-#[inline(always)]
-fn phase(g: f32, cos: F) -> F {
-    let d = splat((1.0 - g) * (1.0 - g)) + splat(2.0 * g) * (F::ONE - cos);
-    splat(1.0 - g * g) / (d * d.sqrt())
 }
 
 #[cfg(test)]
