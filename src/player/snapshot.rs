@@ -7,6 +7,7 @@ use luc::show;
 use luc_core::output::{decimal, png, ppm};
 use luc_core::quality::Quality;
 use luc_core::render::{Renderer, View};
+use std::mem::ManuallyDrop;
 
 /// Renders frame `n` as the options say and writes it.
 pub fn write(options: &Options, n: u64) -> Result<(), Text> {
@@ -33,7 +34,8 @@ pub fn write(options: &Options, n: u64) -> Result<(), Text> {
         Some(view) if cfg!(not(luc_size)) => {
             View::ALL[view].1.draw(&show::scene(n), show::at(n).1, options.size, quality, &mut pixels);
         }
-        _ => show::frame(&mut Renderer::default(), n, options.size, quality, &mut pixels),
+        // The program ends with it: nothing is freed.
+        _ => show::frame(&mut ManuallyDrop::new(Renderer::default()), n, options.size, quality, &mut pixels),
     }
 
     let is_png = output.as_encoded_bytes().ends_with(b".png");

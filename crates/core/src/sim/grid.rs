@@ -8,6 +8,9 @@ use crate::parallel;
 /// Empty cells before each row, and after the last.
 pub const GAP: usize = 8;
 
+/// Work on a row: where its first cell is, that cell's number, and what is made of the row.
+pub type Row<'a, T> = dyn Fn([usize; 3], usize, &mut [T]) + Sync + 'a;
+
 /// Shape of a grid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Grid {
@@ -40,9 +43,9 @@ impl Grid {
         (z + 1) * slice + (y + 1) * row + GAP + x
     }
 
-    /// The cell below a point, and where between it and the next the point lies along each axis, 0 to
-    /// 1. Points count cells from the middle of the border's first; they are bounded before they become
-    /// whole numbers.
+    /// The cell below a point, and where between it and the next the point lies along each axis, from 0
+    /// to 1. Points count cells from the middle of the border's first cell. They are bounded before they
+    /// become whole numbers.
     #[inline(always)]
     pub fn corner(&self, at: [f32; 3]) -> ([usize; 3], [f32; 3]) {
         let (mut cell, mut within) = ([0; 3], [0.0; 3]);
@@ -62,10 +65,9 @@ impl Grid {
         z * slice + y * row + x + GAP - 1
     }
 
-    /// Calls `work` with the first cell of each row, its number, and the row of `out`, by slices on all
-    /// threads.
+    /// Calls `work` for each row, with the row of `out`, by slices on all threads.
     #[inline(never)]
-    pub fn rows<T: Send>(&self, out: &mut [T], work: &(dyn Fn([usize; 3], usize, &mut [T]) + Sync)) {
+    pub fn rows<T: Send>(&self, out: &mut [T], work: &Row<T>) {
         let [_, row, slice] = self.steps();
         let [nx, ny, nz] = self.size;
         parallel::each(out.chunks_mut(slice).skip(1).take(nz), |z, out| {
