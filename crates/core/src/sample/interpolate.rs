@@ -10,7 +10,7 @@ use super::scatter;
 use super::tile::{Kind, Record, TILE, Tile};
 use super::wave::soft;
 use crate::counters::{Counter, Counters};
-use crate::math::lanes::{F, LANE_INDEX, TRUE, U, V3, splat, splat_u};
+use crate::math::lanes::{F, LANE_INDEX, U, V3, splat, splat_u};
 use crate::quality::Rung;
 use crate::render::Stage;
 use crate::scene::Channel;
@@ -135,29 +135,29 @@ fn small(i: U) -> F {
     F::from_bits(i | splat_u(0x4b00_0000)) - splat(8_388_608.0)
 }
 
-/// Rays through pixels, and where they meet the shape of `first` (at its depth where they don't) and
-/// with which id.
+/// Rays through pixels, and where they meet the shape of `first` (at its depth where they don't).
 #[inline(never)]
-fn meet(stage: &Stage, first: Sample, px: F, py: F, counters: &mut Counters) -> (Rays8, F, F) {
-    let id = splat(first.id());
+fn meet(stage: &Stage, first: Sample, px: F, py: F, counters: &mut Counters) -> (Rays8, F) {
     let rays = Rays8 { origin: V3::splat(stage.scene.camera.position), direction: stage.directions(px, py) };
     if first.id() < 0.0 {
-        return (rays, splat(f32::INFINITY), id);
+        return (rays, splat(f32::INFINITY));
     }
-    let shape = first.id() as usize >> 2;
+    let (shape, part) = (first.id() as usize >> 2, first.id() as usize & 3);
+    if first.voxels(stage).is_some() {
+        // All samples lie on one plane.
+        let (way, d) = (V3::splat(first.point()) - rays.origin, rays.direction);
+        return (rays, [way.x / d.x, way.y / d.y, way.z / d.z, F::ZERO][part]);
+    }
     let span = stage.scene.shape(shape).span(&rays, splat(f32::INFINITY), &stage.quality, counters);
-    let (t, part) = span.first();
-    let hit = t.simd_gt(F::ZERO);
-    // Of voxels it knows the very face.
-    let own = hit & first.voxels(stage).map_or(F::ZERO, |_| TRUE);
-    (rays, hit.select(t, splat(first.depth())), own.select(splat(4.0 * shape as f32) + part, id))
+    let (t, _) = span.first();
+    (rays, t.simd_gt(F::ZERO).select(t, splat(first.depth())))
 }
 
 /// Albedo of the known shape at pixels.
 fn albedo(stage: &Stage, first: Sample, px: F, py: F, counters: &mut Counters) -> V3 {
     counters.add(Counter::KnownSurfaces, 8);
-    let (rays, t, id) = meet(stage, first, px, py, counters);
-    let s = surface(stage.scene, &stage.quality, &rays, t, id, splat(stage.pixel));
+    let (rays, t) = meet(stage, first, px, py, counters);
+    let s = surface(stage.scene, &stage.quality, &rays, t, splat(first.id()), splat(stage.pixel));
     s.count(counters);
     s.colour(Channel::Colour)
 }
@@ -167,14 +167,14 @@ fn albedo(stage: &Stage, first: Sample, px: F, py: F, counters: &mut Counters) -
 #[inline(never)]
 fn known_surface(stage: &Stage, first: Sample, px: F, py: F, counters: &mut Counters) -> V3 {
     counters.add(Counter::KnownSurfaces, 8);
-    let (rays, t, id) = meet(stage, first, px, py, counters);
+    let (rays, t) = meet(stage, first, px, py, counters);
     let spread = splat(stage.pixel);
     let light = if first.id() <= NONE {
         counters.add(Counter::DiscTests, 8 * stage.scene.background.discs.len());
         counters.add(Counter::Glows, 8 * stage.scene.background.glows.len());
         shade::background(&stage.scene.background, &rays, spread, soft(stage, spread), F::ZERO).0
     } else {
-        let s = surface(stage.scene, &stage.quality, &rays, t, id, spread);
+        let s = surface(stage.scene, &stage.quality, &rays, t, splat(first.id()), spread);
         s.count(counters);
         let mut codes = first.codes();
         let view = -rays.direction;

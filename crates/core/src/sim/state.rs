@@ -200,21 +200,22 @@ fn curl(cells: &[Cell], [x, y, z]: [usize; 3], i: usize) -> [f32; 3] {
 #[inline(always)]
 fn transport(field: &[Cell], speed: F, time: F, grid: Grid, place: [usize; 3]) -> (F, F, F) {
     let [_, row, slice] = grid.steps();
-    let lanes = |v: [usize; 3]| F::new(std::array::from_fn(|i| v.get(i).map_or(0.0, |v| *v as f32)));
+    let lanes = |[x, y, z]: [usize; 3]| F::new([x as f32, y as f32, z as f32, 0.0, 0.0, 0.0, 0.0, 0.0]);
     let (place, size) = (lanes(place) + F::ONE, lanes(grid.size));
     // Bounded before it becomes a whole number.
     let from = (place - speed * time).fast_max(F::ZERO).fast_min(size + F::ONE);
     let below = from.fast_min(size).fast_trunc_int();
     let within = from - F::from_i32x8(below);
     let below = below.as_array();
-    let base = grid.bordered([0, 1, 2].map(|axis| below[axis] as usize));
-    let within = [0, 1, 2].map(|axis| splat(within.as_array()[axis]));
-    let lines = [0, row, slice, row + slice].map(|step| {
-        let (a, b) = (values(field, base + step), values(field, base + step + 1));
+    let base = grid.bordered([below[0] as usize, below[1] as usize, below[2] as usize]);
+    let within = within.as_array();
+    let within = [splat(within[0]), splat(within[1]), splat(within[2])];
+    let line = |i: usize| {
+        let (a, b) = (values(field, base + i), values(field, base + i + 1));
         (a + (b - a) * within[0], a.fast_min(b), a.fast_max(b))
-    });
+    };
+    let (a, b, c, d) = (line(0), line(row), line(slice), line(row + slice));
     let between = |a: F, b: F, t: F| a + (b - a) * t;
-    let [a, b, c, d] = lines;
     (
         between(between(a.0, b.0, within[1]), between(c.0, d.0, within[1]), within[2]),
         a.1.fast_min(b.1).fast_min(c.1.fast_min(d.1)),

@@ -123,10 +123,15 @@ impl Walk {
             if brick >> (x & 3 | (y & 3) << 2 | (z & 3) << 4) & 1 == 1 && event.0 > 0.0 {
                 return Some(event);
             }
-            let side = if brick == 0 { 4 } else { 1 };
-            let (from, side) = (cell.map(|i| i & -side), [side; 3]);
-            event = self.leaves(from, side);
-            cell = self.cell(event, from, side, true);
+            if brick == 0 {
+                let from = [x & -4, y & -4, z & -4];
+                event = self.leaves(from, [4; 3]);
+                cell = self.cell(event, from, [4; 3], true);
+            } else {
+                event = self.leaves(cell, [1; 3]);
+                let axis = event.1 as usize;
+                cell[axis] += if self.direction[axis] > 0.0 { 1 } else { -1 };
+            }
         }
     }
 }
