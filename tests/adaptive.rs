@@ -8,8 +8,9 @@ use luc::show;
 use luc_core::counters::{Counter, Counters};
 use luc_core::quality::Quality;
 use luc_core::render::{Renderer, Stage};
-use luc_core::sample::{Kind, Scratch, TILE, Tile, refine};
+use luc_core::sample::{Kind, Scratch, TILE, Tile, refine, smoke};
 use luc_core::scene::Scene;
+use luc_core::sim::{Simulation, Volume};
 use std::cell::RefCell;
 use support::crossing::{self, Backdrop, Thing};
 use support::golden;
@@ -21,6 +22,8 @@ const SIZE: (u32, u32) = (640, 360);
 thread_local! {
     /// One for all frames of a test, so that smoke comes from frame to frame, not from its start to each.
     static RENDERER: RefCell<Renderer> = RefCell::default();
+    /// The same for what is sampled without one.
+    static SMOKE: RefCell<Simulation> = RefCell::default();
 }
 
 fn render(scene: &Scene, n: u64, size: (u32, u32), quality: &Quality) -> (Vec<u32>, Counters) {
@@ -200,13 +203,23 @@ fn the_shadow_of_a_ball_of_three_pixels_is_never_lost() {
 
 /// How each pixel of a scene was got, and whether all light is finite, straight from the sampler.
 fn records(scene: &Scene, size: (u32, u32), quality: &Quality) -> (Vec<Kind>, bool) {
-    let stage = Stage::new(scene, quality, size.0, size.1);
+    let mut stage = Stage::new(scene, quality, size.0, size.1);
+    let mut volume = Volume::default();
+    if let Some(of) = &scene.smoke {
+        SMOKE.with_borrow_mut(|simulation| {
+            let (mut counters, eye) = (Counters::default(), scene.camera.position);
+            simulation.run(of, &mut counters);
+            volume.light(of, simulation, &stage.lamps, eye, &mut counters);
+        });
+        stage.volume = Some(&volume);
+    }
     let (width, height) = (size.0 as usize, size.1 as usize);
     let mut kinds = vec![Kind::Traced; width * height];
     let (mut scratch, mut tile, mut finite) = (Scratch::default(), Tile::default(), true);
     for top in (0..height).step_by(TILE) {
         for left in (0..width).step_by(TILE) {
             refine(&stage, &mut scratch, (left, top), &mut tile);
+            smoke(&stage, &mut scratch, (left, top), &mut tile);
             for y in top..height.min(top + TILE) {
                 for x in left..width.min(left + TILE) {
                     kinds[y * width + x] = tile.record[(y - top) * TILE + x - left].kind();

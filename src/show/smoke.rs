@@ -88,18 +88,18 @@ fn figure(step: u32) -> Voxels {
 }
 
 static SMOKE: Smoke = Smoke {
-    lo: v(-2.2, 0.0, -1.6),
+    lo: v(-2.6, 0.0, -1.6),
     cell: 0.08,
-    size: [64, 72, 40],
+    size: [72, 72, 40],
     air: Air {
-        density: 1.8,
+        density: 2.2,
         heat: 1.0,
         lift: 1.7,
-        weight: 0.2,
-        whirl: 0.4,
+        weight: 0.0,
+        whirl: 0.25,
         wind: v(0.1, 0.0, -0.05),
-        fade: 0.06,
-        cool: 0.5,
+        fade: 0.17,
+        cool: 0.35,
         drag: 0.2,
         sweeps: 16,
     },
@@ -146,13 +146,13 @@ static STILL: Still = Still {
         },
         Lamp {
             position: v(-5.2, 2.6, 2.6),
-            colour: times(v(0.34, 0.22, 1.0), 17.7),
+            colour: times(v(0.34, 0.22, 1.0), 26.0),
             spot: Some((v(0.0, 1.0, 0.0), [0.95, 0.8])),
         },
         Lamp { position: v(0.25, 0.55, 1.0), colour: times(v(1.0, 0.62, 0.25), 0.23), spot: None },
     ],
     shading: Shading::Ggx,
-    ambient: [v(0.05, 0.02, 0.03), v(0.06, 0.03, 0.07)],
+    ambient: [v(0.1, 0.035, 0.04), v(0.15, 0.075, 0.17)],
     fog: Some(Fog {
         density: 0.02,
         colour: v(0.26, 0.075, 0.05),

@@ -111,7 +111,7 @@ fn agree(stage: &Stage, cell: Cell, known: &[Vec4; 5], tile: &Tile) -> bool {
     let behind = tile.get(x, y);
     let over = |smoke: Vec4| stage.display.map(behind * smoke.w + smoke.truncate());
     let error = (over((a + b + c + d) * 0.25) - over(middle)).abs().max_element();
-    error <= stage.quality.tolerance * 0.5
+    error <= stage.quality.tolerance
 }
 
 /// Whether depths run evenly over a cell. Over a plane, one over the depth does; whatever lies behind all

@@ -21,11 +21,14 @@ pub const TEMPERATURE: usize = 4;
 /// A cell's values: velocity, density, temperature.
 pub type Cell = [f32; 5];
 
+/// Nothing at all.
+const STILL: Cell = [0.0; 5];
+
 /// Greatest velocity along an axis, cells per step.
 pub const FASTEST: f32 = 4.0;
 
 /// Values nearer to 0 are 0: no motion to be seen, no smoke, and never a subnormal number.
-const LEAST: f32 = 1e-5;
+const LEAST: f32 = 1e-4;
 
 /// Share of the last step's pressure that the next begins with. Under 1, so that it can't drift in
 /// closed rooms, whose pressure nothing determines.
@@ -76,7 +79,7 @@ pub struct Room {
 impl State {
     /// Still air.
     pub fn new(grid: Grid) -> Self {
-        State { cells: vec![[0.0; 5]; grid.len()], pressure: vec![0.0; grid.len()] }
+        State { cells: vec![STILL; grid.len()], pressure: vec![0.0; grid.len()] }
     }
 
     /// Goes one step on, among `figure`.
@@ -103,6 +106,10 @@ impl State {
         });
         grid.rows(&mut room.first, &|place, at, out| {
             for (i, out) in out.iter_mut().enumerate() {
+                if cells[at + i] == STILL {
+                    *out = STILL;
+                    continue;
+                }
                 let place = [place[0] + i, place[1], place[2]];
                 *out = cut(transport(cells, values(cells, at + i), F::ONE, grid, place).0);
             }
@@ -111,7 +118,9 @@ impl State {
         grid.rows(&mut room.before, &|place, at, out| {
             for (i, out) in out.iter_mut().enumerate() {
                 *out = match kinds[at + i] {
-                    Kind::Solid => [0.0; 5],
+                    Kind::Solid => STILL,
+                    // What the formulas below would give, too.
+                    Kind::Air if cells[at + i] == STILL && whirls[at + i] < CALM => STILL,
                     kind => {
                         let place = [place[0] + i, place[1], place[2]];
                         let old = values(cells, at + i);
