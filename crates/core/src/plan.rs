@@ -36,7 +36,7 @@ impl Plan {
         let adaptive = quality.block > 1;
         let grain = materials().any(|m| m.texture.grain > 0.0);
         let bumps = materials().any(|m| m.texture.bump > 0.0);
-        let textured = grain || bumps;
+        let textured = grain || bumps || !scene.voxels.is_empty();
         let pattern = |p| materials().any(|m| m.texture.is_visible() && m.texture.pattern == p);
         let known = quality.rung == Rung::Surface || (quality.rung == Rung::Light && textured);
         let calls = [
