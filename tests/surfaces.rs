@@ -64,6 +64,7 @@ fn shore() -> Scene {
             kind: LightKind::Point,
         }],
         shading: Shading::Ggx,
+        rough: true,
         ambient: [Vec3::new(0.02, 0.03, 0.05), Vec3::new(0.06, 0.08, 0.15)],
         ..Scene::default()
     };
@@ -172,7 +173,7 @@ fn drawn_mirrors_give_no_more_light_than_comes_in() {
     for roughness in [0.1, 0.3, 0.8] {
         let f0 = Vec3::new(1.0, 0.5, 0.04);
         let metal = Material { diffuse: 0.0, f0, roughness, reflection: 1.0, ..Material::default() };
-        let scene = Scene { shading: Shading::Ggx, ..furnace(metal) };
+        let scene = Scene { shading: Shading::Ggx, rough: true, ..furnace(metal) };
         let quality = Quality { rough: 16, ..preset("high").every_pixel() };
         let (_, all) = light(&scene, &quality);
         assert!(all.iter().all(|c| c.max_element() <= 1.0001), "roughness {roughness}");

@@ -2,6 +2,8 @@
 //!
 //! Without the feature `counters` the struct is empty and every call vanishes.
 
+use crate::study::{Phase, Stopwatch, Study};
+
 /// Declares the counters once: names for code, and words for people.
 macro_rules! counters {
     ($($name:ident $words:literal,)*) => {
@@ -73,17 +75,25 @@ counters! {
 pub struct Counters {
     #[cfg(feature = "counters")]
     counts: [u64; Counter::ALL.len()],
+    /// Where the time went, if a study wants to know.
+    pub watch: Stopwatch,
 }
 
 // Arrays over 32 have no default of their own.
 #[cfg(feature = "counters")]
 impl Default for Counters {
     fn default() -> Self {
-        Self { counts: [0; Counter::ALL.len()] }
+        Self { counts: [0; Counter::ALL.len()], watch: Stopwatch::default() }
     }
 }
 
 impl Counters {
+    /// Counts of nothing yet, at work in `phase`.
+    #[inline(always)]
+    pub fn start(study: &Study, phase: Phase) -> Self {
+        Self { watch: Stopwatch::start(study, phase), ..Self::default() }
+    }
+
     /// Adds `n` to a count.
     #[inline(always)]
     pub fn add(&mut self, counter: Counter, n: usize) {
@@ -111,6 +121,6 @@ impl Counters {
         for (a, b) in self.counts.iter_mut().zip(other.counts) {
             *a += b;
         }
-        let _ = other;
+        self.watch.merge(&other.watch);
     }
 }

@@ -48,4 +48,5 @@ pub mod sample;
 pub mod scene;
 pub mod shade;
 pub mod sim;
+pub mod study;
 pub mod trace;

@@ -26,7 +26,9 @@ impl Plan {
         let shines = lit || points;
         let chains = quality.depth > 0;
         let ggx = scene.shading == Shading::Ggx;
-        let is_rough = |m: &Material| ggx && quality.rough > 0 && m.roughness > ROUGH && !m.is_transparent();
+        let is_rough = |m: &Material| {
+            ggx && scene.rough && quality.rough > 0 && m.roughness > ROUGH && !m.is_transparent()
+        };
         let reflects = |m: &Material| m.reflection > 0.0 && m.f0.max_element() > 0.0;
         let mirrors = chains && materials().any(reflects);
         let rough = chains && materials().any(|m| reflects(m) && is_rough(m));

@@ -1,5 +1,7 @@
 //! The quality ladder: every knob that trades accuracy for time, as six named presets.
 
+use crate::study::Study;
+
 /// What is interpolated between the samples of a cell that needs no further samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Rung {
@@ -50,6 +52,8 @@ pub struct Quality {
     pub cull: bool,
     /// Frames with different sample patterns that are averaged: 1, more for a still.
     pub average: u32,
+    /// What a study takes away; nothing in the show.
+    pub study: Study,
 }
 
 impl Quality {
@@ -74,6 +78,7 @@ impl Quality {
                 light_tile: 16,
                 cull: true,
                 average: 1,
+                study: Study::NONE,
             },
         ),
         (
@@ -95,6 +100,7 @@ impl Quality {
                 light_tile: 16,
                 cull: true,
                 average: 1,
+                study: Study::NONE,
             },
         ),
         (
@@ -116,6 +122,7 @@ impl Quality {
                 light_tile: 16,
                 cull: true,
                 average: 1,
+                study: Study::NONE,
             },
         ),
         (
@@ -137,6 +144,7 @@ impl Quality {
                 light_tile: 16,
                 cull: true,
                 average: 1,
+                study: Study::NONE,
             },
         ),
         (
@@ -158,6 +166,7 @@ impl Quality {
                 light_tile: 16,
                 cull: true,
                 average: 1,
+                study: Study::NONE,
             },
         ),
         (
@@ -179,6 +188,7 @@ impl Quality {
                 light_tile: 16,
                 cull: true,
                 average: 1,
+                study: Study::NONE,
             },
         ),
     ];

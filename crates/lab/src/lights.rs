@@ -16,7 +16,7 @@ const COUNTS: [u32; 10] = [1, 2, 4, 8, 16, 32, 64, 128, 256, 512];
 const ROUNDS: usize = 5;
 
 /// Runs the command and prints its table.
-pub fn run() -> Result<(), String> {
+pub fn run(_args: &[String]) -> Result<(), String> {
     let quality = Quality::named("high").ok_or("no preset high")?.every_pixel();
     let naive = Quality { cull: false, ..quality };
     println!("every pixel of {}x{}; time and evaluations per pixel, against naive", SIZE.0, SIZE.1);

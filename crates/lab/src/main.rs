@@ -1,30 +1,77 @@
-//! The lab: what a frame did, and how far adaptive sampling is from tracing every pixel.
+//! The lab: what accuracy costs in time, what a frame did, and tools to look at the show.
 //!
-//! `cargo lab stats [FRAME] [QUALITY] [WxH]` prints the counters of one frame, its time, and the
-//! peak signal-to-noise ratio of its display values against the same quality with every pixel
-//! traced. `cargo lab lights` compares culled with naive small lights. `cargo lab smoke`
-//! tells what smoke costs.
+//! `cargo lab help` lists the commands.
 
+#![allow(clippy::disallowed_methods, reason = "figures to read, never pixels of the show")]
+
+mod accuracy;
+mod args;
+mod bench;
+mod capture;
+mod figures;
+mod font;
 mod lights;
+mod metric;
+mod plot;
+mod png_file;
+mod progress;
+mod scale;
+mod sheet;
 mod smoke;
 mod stats;
+mod subject;
 mod swarm;
+mod view;
 
 use std::process::exit;
 
+/// A command: its name, what follows it, what it does, and the function.
+type Command = (&'static str, &'static str, &'static str, fn(&[String]) -> Result<(), String>);
+
+const COMMANDS: [Command; 8] = [
+    (
+        "accuracy",
+        "[--quick]",
+        "what accuracy costs in time, as CSV, plots and a page in docs/accuracy",
+        accuracy::run,
+    ),
+    (
+        "bench",
+        "[--compare OLD.json] [--callgrind]",
+        "frame times along every part, by preset and by phase",
+        bench::run,
+    ),
+    ("view", "[--part NAME] [--from N]", "the show in a window with the keys of an editor", view::run),
+    ("sheet", "[--part NAME]", "contact sheets in target/sheets", sheet::run),
+    ("capture", "[-o FILE] [--shard I/N]", "frames as y4m, to a file or standard output", capture::run),
+    ("stats", "[FRAME] [QUALITY] [WxH]", "counters, time and error of one frame", stats::run),
+    ("lights", "", "culled against naive small lights", lights::run),
+    ("smoke", "", "what the motion, the light and the sight of smoke cost", smoke::run),
+];
+
+/// The list of commands.
+fn help() -> String {
+    let line =
+        |&(name, args, words, _): &Command| format!("  cargo lab {:<34} {words}\n", format!("{name} {args}"));
+    COMMANDS.iter().map(line).collect()
+}
+
 fn main() {
     let args: Vec<String> = std::env::args().skip(1).collect();
-    let result = match args.first().map(String::as_str) {
-        Some("stats") => stats::run(&args[1..]),
-        Some("lights") => lights::run(),
-        Some("smoke") => smoke::run(),
-        _ => {
-            Err("usage: cargo lab stats [FRAME] [QUALITY] [WxH], or cargo lab lights, or cargo lab smoke"
-                .into())
+    let name = args.first().map_or("", String::as_str);
+    let result = match COMMANDS.iter().find(|command| command.0 == name) {
+        Some((.., run)) => run(&args[1..]),
+        // What the bench runs under valgrind.
+        None if name == "kernel" => bench::kernels::run(&args[1..]),
+        None if ["help", "--help", "-h"].contains(&name) => {
+            print!("{}", help());
+            Ok(())
         }
+        None if name.is_empty() => Err(format!("which command?\n{}", help())),
+        None => Err(format!("'{name}' is no command; cargo lab help lists them")),
     };
     if let Err(message) = result {
-        eprintln!("lab: {message}");
+        eprintln!("lab: {}", message.trim_end());
         exit(2);
     }
 }

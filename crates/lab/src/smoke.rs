@@ -40,7 +40,7 @@ fn middle(mut times: Vec<f64>) -> String {
 }
 
 /// Measures and prints.
-pub fn run() -> Result<(), String> {
+pub fn run(_: &[String]) -> Result<(), String> {
     let mut counters = Counters::default();
     let air = Air { lift: 4.0, whirl: 1.0, ..Air::DEFAULT };
     let whole = Smoke { cell: 0.05, size: CELLS, air, ..Smoke::new(fire) };

@@ -1,5 +1,6 @@
 //! `lab stats`: one frame's counters, time and error.
 
+use crate::metric::psnr;
 use luc::show;
 use luc_core::counters::{Counter, Counters};
 use luc_core::plan;
@@ -24,27 +25,12 @@ fn render(n: u64, size: (u32, u32), quality: &Quality) -> (Vec<u32>, Counters, f
     (pixels, renderer.counters, times[PASSES / 2])
 }
 
-/// Peak signal-to-noise ratio of two pictures of 0RGB pixels, dB; infinite if they are equal.
-pub fn psnr(a: &[u32], b: &[u32]) -> f64 {
-    let square = |shift: u32| {
-        let channel = |p: u32| (p >> shift & 255) as f64;
-        a.iter().zip(b).map(|(&a, &b)| (channel(a) - channel(b)) * (channel(a) - channel(b))).sum::<f64>()
-    };
-    let mse = [0, 8, 16].map(square).iter().sum::<f64>() / (3 * a.len()) as f64;
-    #[allow(clippy::disallowed_methods, reason = "a figure to read, not a pixel")]
-    let db = 10.0 * (255.0 * 255.0 / mse).log10();
-    db
-}
-
 /// Runs the command with the arguments after `stats`.
 pub fn run(args: &[String]) -> Result<(), String> {
     let arg = |i: usize, default: &str| args.get(i).cloned().unwrap_or(default.into());
     let n: u64 = arg(0, "0").parse().map_err(|_| "FRAME must be a whole number")?;
-    let quality = Quality::named(&arg(1, "high")).ok_or("QUALITY must be the name of a preset")?;
-    let size = arg(2, "1280x720");
-    let (w, h) = size.split_once('x').ok_or("the size must look like 1280x720")?;
-    let parse = |s: &str| s.parse::<u32>().ok().filter(|n| (1..=7680).contains(n));
-    let size = (parse(w).ok_or("bad width")?, parse(h).ok_or("bad height")?);
+    let quality = crate::args::preset(&arg(1, "high"))?;
+    let size = crate::args::size(&arg(2, "1280x720"))?;
 
     let (adaptive, counters, time) = render(n, size, &quality);
     let (full, full_counters, full_time) = render(n, size, &quality.every_pixel());

@@ -236,7 +236,7 @@ impl Bloom {
         if amount <= 0.0 || !bright(stage, tiles, &mut self.0[0]) {
             return None;
         }
-        let last = WEIGHTS.len() - 1;
+        let last = stage.quality.study.octaves(WEIGHTS.len()) - 1;
         for level in 0..=last {
             let (upper, lower) = self.0.split_at_mut(level + 1);
             upper[level].blur();

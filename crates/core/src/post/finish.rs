@@ -10,6 +10,7 @@ use crate::math::hash::{hash2, mix_x8, unit_x8};
 use crate::math::lanes::{F, LANE_INDEX, RAMP, V3, load, splat, splat_u};
 use crate::render::Stage;
 use crate::sample::{Kind, TILE, Tile};
+use crate::study::Phase;
 use crate::{features, parallel};
 use glam::Vec3;
 
@@ -20,8 +21,9 @@ const ROWS: usize = 16;
 pub fn finish(stage: &Stage, tiles: &[Tile], bloom: &mut Bloom, n: u64, pixels: &mut [u32]) -> Counters {
     let width = stage.width as usize;
     let across = width.div_ceil(TILE);
+    let mut counters = Counters::start(&stage.quality.study, Phase::Bloom);
     let glow = bloom.glow(stage, tiles);
-    let mut counters = Counters::default();
+    counters.watch.enter(Phase::Finishing);
     counters.add(Counter::BloomPasses, glow.is_some() as usize);
     let painted = (stage.scene.overlay * stage.width as f32) as usize;
     counters.add(Counter::OverlayPixels, painted * stage.height as usize);
@@ -33,6 +35,7 @@ pub fn finish(stage: &Stage, tiles: &[Tile], bloom: &mut Bloom, n: u64, pixels: 
             }
         }
     });
+    counters.watch.stop();
     counters
 }
 

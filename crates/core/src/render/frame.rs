@@ -9,6 +9,7 @@ use crate::quality::Quality;
 use crate::sample::{Scratch, TILE, Tile, beams, refine, share_edges, smoke, smooth_edges};
 use crate::scene::Scene;
 use crate::sim::{Simulation, Volume};
+use crate::study::Phase;
 use crate::{parallel, post};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -79,8 +80,9 @@ impl Renderer {
             for (pass, finds_edges) in passes {
                 parallel::each(self.tiles.iter_mut(), |i, tile| {
                     let mut scratch = pool.take();
-                    scratch.counters = Counters::default();
+                    scratch.counters = Counters::start(&stage.quality.study, Phase::Sampling);
                     pass(&stage, &mut scratch, (i % across * TILE, i / across * TILE), tile);
+                    scratch.counters.watch.stop();
                     tile.counters = scratch.counters;
                     pool.give(scratch);
                 });

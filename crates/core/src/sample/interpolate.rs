@@ -15,6 +15,7 @@ use crate::quality::Rung;
 use crate::render::Stage;
 use crate::scene::Channel;
 use crate::shade::{self, Visibility};
+use crate::study::Phase;
 use crate::trace::{NONE, Rays8, surface};
 use glam::Vec3;
 
@@ -26,10 +27,10 @@ struct Patch([Vec3; 5]);
 
 impl Patch {
     #[inline(never)]
-    fn of(known: &Known, value: fn(Sample) -> Vec3) -> Patch {
+    fn of(stage: &Stage, known: &Known, value: fn(Sample) -> Vec3) -> Patch {
         let [a, b, c, d, centre] = known.samples.map(value);
         // A cell that was too small to be split may end on an edge: a bump would dot it.
-        let bend = if known.same_surface() { 16.0 } else { 0.0 };
+        let bend = if stage.quality.study.centre() && known.same_surface() { 16.0 } else { 0.0 };
         let bump = (centre - known.mean(value)) * bend;
         Patch([a, b, c, d, bump])
     }
@@ -52,6 +53,7 @@ pub(super) fn fill(
     tile: &mut Tile,
     counters: &mut Counters,
 ) {
+    counters.watch.enter(Phase::Filling);
     let first = known.samples[0];
     let equal = known.agree_within(SAME);
     let kind = if equal { Kind::Filled } else { Kind::Interpolated };
@@ -77,6 +79,7 @@ pub(super) fn fill(
     let scale = splat(1.0 / cell.size as f32);
     let shift = cell.size.trailing_zeros();
     let patch = Patch::of(
+        stage,
         known,
         match rung {
             Rung::Light if textured => |s| s.colour() - s.irradiance() * s.albedo(),
@@ -84,7 +87,7 @@ pub(super) fn fill(
             Rung::Surface => |s| s.indirect(),
         },
     );
-    let light = (rung == Rung::Light && textured).then(|| Patch::of(known, |s| s.irradiance()));
+    let light = (rung == Rung::Light && textured).then(|| Patch::of(stage, known, |s| s.irradiance()));
     for base in (0..count.div_ceil(8)).map(|i| 8 * i) {
         let place = |lane: usize| {
             let i = base + lane;
@@ -117,6 +120,7 @@ pub(super) fn fill(
             }
         }
     }
+    counters.watch.enter(Phase::Sampling);
 }
 
 /// Depths between the corners: over a plane, one over the depth is linear on the screen.

@@ -86,7 +86,7 @@ pub fn refine(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize), tile
         for i in level {
             let cell = cells[i];
             let at = |i: usize| {
-                let (x, y) = cell.point(i);
+                let (x, y) = cell.point(if stage.quality.study.centre() { i } else { i & 3 });
                 scratch.samples.get(scratch.grid[y * GRID + x] as usize)
             };
             let known = Known { size: cell.size, samples: std::array::from_fn(at) };
@@ -122,7 +122,7 @@ fn sample(stage: &Stage, scratch: &mut Scratch, cells: &[Cell], corner: (usize, 
     let mut missing: Vec<Position> = Vec::new();
     let before = scratch.samples.0.len() * 8;
     for cell in cells {
-        for (x, y) in (0..5).map(|i| cell.point(i)) {
+        for (x, y) in (0..4 + stage.quality.study.centre() as usize).map(|i| cell.point(i)) {
             let slot = &mut scratch.grid[y * GRID + x];
             if *slot == u32::MAX {
                 *slot = (before + missing.len()) as u32;
@@ -213,6 +213,9 @@ impl Known<'_> {
             return false;
         }
         let same = self.same_signature();
+        if same && !stage.quality.study.centre() {
+            return true;
+        }
         let tolerance = stage.quality.tolerance * if same { 1.0 } else { 0.25 };
         let mut error = 0.0;
         if stage.rung(self.samples[4].id()) == Rung::Surface {

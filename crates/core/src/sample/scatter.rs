@@ -91,6 +91,7 @@ pub fn bounces(stage: &Stage, packet_seed: U, s: &Surface, level: u32) -> F {
 pub fn rough(stage: &Stage, s: &Surface, level: u32) -> F {
     let drawn = features::ROUGH
         && level == 0
+        && stage.scene.rough
         && stage.quality.rough > 0
         && stage.quality.depth > 0
         && stage.scene.shading == Shading::Ggx;

@@ -15,6 +15,7 @@ use crate::math::lanes::{F, U, V3, splat};
 use crate::render::Stage;
 use crate::scene::{Channel, Shading};
 use crate::shade::{self, MAX_LAMPS, Visibility};
+use crate::study::Phase;
 use crate::trace::{Hits, NONE, Rays8, nearest, surface};
 use glam::Vec3;
 
@@ -135,10 +136,12 @@ pub(super) fn soft(stage: &Stage, spread: F) -> F {
 fn step(stage: &Stage, scratch: &mut Scratch, candidates: u64, level: u32) {
     let Scratch { samples, counters, rays, next, hits, occluders: boxes, .. } = scratch;
     hits.clear();
+    counters.watch.enter(Phase::Tracing);
     for packet in &rays.packets {
         hits.push(nearest(stage.scene, &stage.quality, &packet.rays, candidates, counters));
     }
 
+    counters.watch.enter(Phase::Sampling);
     let mut shadows = [u64::MAX; MAX_LAMPS];
     if stage.quality.cull && hits.len() >= CULL_FROM {
         boxes.0.clear();
@@ -149,6 +152,7 @@ fn step(stage: &Stage, scratch: &mut Scratch, candidates: u64, level: u32) {
         shadows = boxes.candidates(stage);
     }
 
+    counters.watch.enter(Phase::Shading);
     let mut found = Found::default();
     for (k, hit) in hits.iter().enumerate() {
         let packet = &rays.packets[k];
@@ -176,6 +180,7 @@ fn step(stage: &Stage, scratch: &mut Scratch, candidates: u64, level: u32) {
             found.spawn(stage, owners, next, counters);
         }
     }
+    counters.watch.enter(Phase::Sampling);
 }
 
 /// What a packet's rays found.

@@ -141,6 +141,8 @@ pub struct Scene {
     /// Bounces of diffuse light that rays follow where the quality has samples for them, 0 to 3; after
     /// the last one, or without, the ambient light stands for them.
     pub bounces: u32,
+    /// Whether a rough mirror is drawn as several rays where the quality has them; else one stands for them.
+    pub rough: bool,
     /// Light from everywhere below (normal down) and above (normal up), mixed by the normal's y.
     pub ambient: [Vec3; 2],
     /// Haze, if the scene has any.

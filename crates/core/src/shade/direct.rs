@@ -12,6 +12,7 @@ use crate::math::lanes::{F, V3, splat};
 use crate::math::lanes_fn::{exp, pow};
 use crate::render::Stage;
 use crate::scene::{Channel, Scene, Shading};
+use crate::study::Phase;
 use crate::trace::{BLOCKED, Rays8, Surface, ambient_share, occlusion};
 use glam::Vec3;
 
@@ -159,6 +160,7 @@ pub fn direct(
             if (candidates[k] != 0 || !stage.scene.meshes.is_empty()) && wanted.any() {
                 counters.add(Counter::ShadowRays, wanted.to_bitmask().count_ones() as usize);
                 let rays = Rays8 { origin: start, direction: to_lamp };
+                counters.watch.enter(Phase::Tracing);
                 let found = occlusion(
                     stage.scene,
                     &stage.quality,
@@ -168,6 +170,7 @@ pub fn direct(
                     candidates[k],
                     counters,
                 );
+                counters.watch.enter(Phase::Shading);
                 *code = found & wanted;
             }
         }

@@ -198,6 +198,9 @@ pub fn field(rays: &Rays8, field: &Field, limit: F, quality: &Quality, counters:
         found |= arrived;
         active &= !arrived;
         (last_t, last) = (active.select(t, last_t), active.select(value, last));
+        if let Some(pace) = quality.study.pace() {
+            value *= splat(pace);
+        }
         t = active.select(t + value / speed, t);
         active &= t.simd_lt(end);
     }

@@ -52,6 +52,9 @@ const RUSTFLAGS: &[&str] = &[
     "-Cllvm-args=-enable-pre=0",
     "-Cllvm-args=-enable-load-pre=0",
     "-Cllvm-args=-x86-use-vzeroupper=0",
+    // Fewer shared subexpressions are fewer spills (150), and short jump tables cost more than comparisons (90).
+    "-Cllvm-args=-disable-machine-cse",
+    "-Cllvm-args=-min-jump-table-entries=8",
     // Warnings are for the ordinary build, which sees the same code.
     "--cap-lints=allow",
 ];

@@ -1,0 +1,263 @@
+//! `lab accuracy`: what accuracy costs in time.
+//!
+//! Every part of the show, several frames each, is drawn under every position of every knob of
+//! [`Quality`] alone and under the six presets. Times are the median of interleaved passes in
+//! processor time, errors are against `reference` with several patterns averaged. Rows go to a CSV
+//! file as they are found, so that an interruption keeps them and the next run goes on; plots,
+//! pictures and a page are made from it.
+
+mod front;
+mod growth;
+mod knobs;
+mod measure;
+mod page;
+mod pictures;
+mod plots;
+mod table;
+
+use crate::progress::Progress;
+use crate::subject::Subject;
+use knobs::{Knob, On, Truth, knobs};
+use lexopt::prelude::*;
+use luc_core::quality::Quality;
+use luc_core::render::Renderer;
+use measure::{Effort, Task};
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use std::path::PathBuf;
+use table::{Figure, Row, Table};
+
+/// What the command was asked for.
+struct Options {
+    quick: bool,
+    fresh: bool,
+    /// Draw plots and page from what was measured before.
+    pages_only: bool,
+    out: Option<PathBuf>,
+    part: Option<String>,
+    threads: usize,
+    size: Option<(u32, u32)>,
+}
+
+/// Frames of each part that are measured.
+const FRAMES: u64 = 3;
+
+/// Where the committed study lies, and where that of `--quick`.
+const OUT: &str = "docs/accuracy";
+const QUICK_OUT: &str = "target/accuracy";
+
+fn options(args: &[String]) -> Result<Options, lexopt::Error> {
+    let mut parser = lexopt::Parser::from_args(args);
+    let mut options = Options {
+        quick: false,
+        fresh: false,
+        pages_only: false,
+        out: None,
+        part: None,
+        threads: 1,
+        size: None,
+    };
+    while let Some(arg) = parser.next()? {
+        match arg {
+            Long("quick") => options.quick = true,
+            Long("fresh") => options.fresh = true,
+            Long("pages") => options.pages_only = true,
+            Long("out") => options.out = Some(parser.value()?.into()),
+            Long("part") => options.part = Some(parser.value()?.parse()?),
+            Long("threads") => options.threads = parser.value()?.parse()?,
+            Long("size") => options.size = Some(parser.value()?.parse_with(crate::args::size)?),
+            _ => return Err(arg.unexpected()),
+        }
+    }
+    Ok(options)
+}
+
+/// The study: its subjects, knobs and effort.
+struct Study {
+    subjects: Vec<Subject>,
+    knobs: Vec<Knob>,
+    effort: Effort,
+    frames: u64,
+    pool: ThreadPool,
+}
+
+/// Runs the command with the arguments after `accuracy`.
+pub fn run(args: &[String]) -> Result<(), String> {
+    let options = options(args).map_err(|e| e.to_string())?;
+    let mut parts = Subject::show();
+    if let Some(name) = &options.part {
+        parts.retain(|s| s.name == name);
+        if parts.is_empty() {
+            return Err(format!("no part is called {name}"));
+        }
+    }
+    let mut subjects = parts.clone();
+    subjects.push(Subject::fireflies());
+    let effort = if options.quick {
+        Effort { size: (160, 90), passes: 1, enough: 0.0, patterns: 1, flicker: 3 }
+    } else {
+        Effort { size: (320, 180), passes: 5, enough: 600.0, patterns: 4, flicker: 30 }
+    };
+    let effort = Effort { size: options.size.unwrap_or(effort.size), ..effort };
+    let out = options.out.clone().unwrap_or_else(|| if options.quick { QUICK_OUT } else { OUT }.into());
+    let threads = options.threads;
+    let pool = ThreadPoolBuilder::new().num_threads(threads).build();
+    let study = Study {
+        subjects,
+        knobs: knobs(),
+        effort,
+        frames: if options.quick { 1 } else { FRAMES },
+        pool: pool.map_err(|_| format!("{threads} threads can't be started"))?,
+    };
+    let conditions = format!(
+        "# {}x{}; {threads} thread(s); at most {} passes; truth of {} patterns; flicker over {} frames; engine {:016x}",
+        effort.size.0,
+        effort.size.1,
+        effort.passes,
+        effort.patterns,
+        effort.flicker,
+        fingerprint()
+    );
+    let file = out.join("study.csv");
+    if !options.pages_only {
+        let mut table = Table::open(&file, &conditions, options.fresh)?;
+        study.measure(&mut table)?;
+        growth::measure(&study.pool, &parts, &out, &conditions, options.quick, options.fresh)?;
+    }
+    let (conditions, rows) = table::read(&file)?;
+    let data = page::Data { rows, conditions, knobs: knobs(), growth: growth::read(&out)? };
+    plots::write(&data, &out)?;
+    if !options.pages_only || !out.join(pictures::FOLDER).exists() {
+        pictures::write(&parts, &out, options.quick)?;
+    }
+    page::write(&data, &out)?;
+    eprintln!("see {}", out.join("index.html").display());
+    Ok(())
+}
+
+/// A number that changes with what the engine draws: small drafts of all parts, and the presets.
+fn fingerprint() -> u64 {
+    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
+    let mut add = |bytes: &[u8]| {
+        bytes.iter().for_each(|&b| hash = (hash ^ u64::from(b)).wrapping_mul(0x0000_0100_0000_01b3));
+    };
+    let mut renderer = Renderer::default();
+    let mut pixels = vec![0; 64 * 36];
+    for subject in Subject::show() {
+        add(subject.name.as_bytes());
+        for n in subject.spread(2) {
+            renderer.frame(&subject.bare(n), n, (64, 36), &knobs::base(), &mut pixels);
+            pixels.iter().for_each(|p| add(&p.to_be_bytes()));
+        }
+    }
+    add(format!("{:?}", Quality::PRESETS).as_bytes());
+    hash
+}
+
+impl Study {
+    /// The settings that are still to be measured on a frame. Knobs of light, whose truth is dear,
+    /// are measured on the middle frame only.
+    fn tasks(&self, subject: &Subject, n: u64, middle: bool, rows: &[Row]) -> Vec<Task<'_>> {
+        let on = if subject.name == Subject::fireflies().name { On::Fireflies } else { On::Show };
+        let mut tasks = Vec::new();
+        for knob in self.knobs.iter().filter(|k| k.on == on && (middle || k.truth == Truth::Show)) {
+            for setting in &knob.settings {
+                if !rows.iter().any(|r| r.is(subject.name, n, knob.name, &setting.label)) {
+                    tasks.push((knob, setting));
+                }
+            }
+        }
+        tasks
+    }
+
+    /// Frames of a subject, the middle one first, with whether it is that.
+    fn frames(&self, subject: &Subject) -> Vec<(u64, bool)> {
+        let frames: Vec<u64> = subject.spread(self.frames).collect();
+        let middle = frames.len() / 2;
+        let rest = frames.iter().enumerate().filter(|(i, _)| *i != middle).map(|(_, &n)| (n, false));
+        std::iter::once((frames[middle], true)).chain(rest).collect()
+    }
+
+    /// Measures what the table lacks.
+    fn measure(&self, table: &mut Table) -> Result<(), String> {
+        let mut total = 0.0;
+        for subject in &self.subjects {
+            for (n, middle) in self.frames(subject) {
+                total += work(&self.tasks(subject, n, middle, &table.rows), middle);
+            }
+        }
+        if total == 0.0 {
+            return Ok(());
+        }
+        let mut progress = Progress::new(total);
+        for subject in &self.subjects {
+            for (n, middle) in self.frames(subject) {
+                let tasks = self.tasks(subject, n, middle, &table.rows);
+                if !tasks.is_empty() {
+                    self.measure_frame(subject, n, middle, &tasks, table, &mut progress)?;
+                }
+            }
+        }
+        progress.end("measured");
+        Ok(())
+    }
+
+    fn measure_frame(
+        &self,
+        subject: &Subject,
+        n: u64,
+        middle: bool,
+        tasks: &[Task],
+        table: &mut Table,
+        progress: &mut Progress,
+    ) -> Result<(), String> {
+        let effort = &self.effort;
+        let needs = |truth| tasks.iter().any(|(knob, _)| knob.truth == truth);
+        let truths = [Truth::Show, Truth::Light].map(|truth| {
+            progress.step(0.0, &format!("{} {n}: truth", subject.name));
+            needs(truth).then(|| measure::truth(subject, n, effort, truth))
+        });
+        let timings = measure::time(&self.pool, subject, n, tasks, effort, |what| progress.step(0.0, what));
+        let flickers = middle && tasks.iter().any(|(knob, _)| knob.samples);
+        let moving = match flickers {
+            true => measure::flicker_truths(subject, n, effort, |what| progress.step(0.0, what)),
+            false => Vec::new(),
+        };
+        for (task, timing) in tasks.iter().zip(&timings) {
+            let (knob, setting) = *task;
+            let mut picture = crate::metric::Picture::new(effort.size);
+            measure::draw(&mut Renderer::default(), subject, n, setting, &mut picture);
+            let mut row = Row {
+                part: subject.name.into(),
+                frame: n,
+                knob: knob.name.into(),
+                value: setting.label.clone(),
+                figures: [f64::NAN; Figure::ALL.len()],
+            };
+            measure::fill_counts(&mut row, timing, picture.pixels.len() as f64);
+            let truth = &truths[usize::from(knob.truth == Truth::Light)];
+            if let (Some(truth), On::Show) = (truth, knob.on) {
+                measure::fill_errors(&mut row, truth, &picture);
+            }
+            if knob.samples {
+                let error = measure::error_of_sampling(subject, n, setting, &picture);
+                row.set(Figure::PsnrOfSampling, error);
+            }
+            // The truth has no flicker, and the mean of many patterns takes as long to tell as all the rest.
+            let worth = setting.quality.samples < 15 && setting.quality.average <= 4;
+            if middle && knob.samples && worth && moving.len() > 1 {
+                row.set(Figure::Flicker, measure::measure_flicker(subject, n, setting, &moving));
+            }
+            table.add(row)?;
+            progress.step(
+                work(std::slice::from_ref(task), middle),
+                &format!("{} {n}: errors, {}", subject.name, knob.name),
+            );
+        }
+        Ok(())
+    }
+}
+
+/// About how much work settings are, in times, errors and flicker.
+fn work(tasks: &[Task], middle: bool) -> f64 {
+    tasks.iter().map(|(knob, _)| if middle && knob.samples { 3.0 } else { 1.0 }).sum()
+}

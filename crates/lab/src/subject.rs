@@ -1,0 +1,45 @@
+//! What the lab draws: the parts of the show, and a scene of small lights that no part has yet.
+
+use crate::swarm;
+use luc::show;
+use luc_core::scene::Scene;
+
+/// A scene over time.
+#[derive(Clone, Copy)]
+pub struct Subject {
+    /// Name in tables.
+    pub name: &'static str,
+    /// Length in frames.
+    pub frames: u64,
+    /// The scene at a frame.
+    pub scene: fn(u64) -> Scene,
+}
+
+impl Subject {
+    /// The parts of the show, in its order.
+    pub fn show() -> Vec<Subject> {
+        let subject = |p: &show::Part| Subject { name: p.name, frames: p.frames, scene: p.scene };
+        show::PARTS.iter().map(subject).collect()
+    }
+
+    /// 256 small lights over hills by night; it stands still.
+    pub fn fireflies() -> Subject {
+        Subject { name: "fireflies", frames: 1, scene: |_| swarm::scene(256) }
+    }
+
+    /// The scene at frame `n` as it is measured: without overlays that show the sampling, and
+    /// without grain, which is the same in all pictures.
+    pub fn bare(&self, n: u64) -> Scene {
+        let mut scene = (self.scene)(n);
+        scene.overlay = 0.0;
+        scene.light_count = 0.0;
+        scene.grade.grain = 0.0;
+        scene
+    }
+
+    /// `count` frames spread evenly over it.
+    pub fn spread(&self, count: u64) -> impl Iterator<Item = u64> + use<> {
+        let (count, frames) = (count.min(self.frames), self.frames);
+        (0..count).map(move |k| frames * (2 * k + 1) / (2 * count))
+    }
+}
