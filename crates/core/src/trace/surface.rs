@@ -243,8 +243,9 @@ pub fn surface(scene: &Scene, quality: &Quality, rays: &Rays8, t: F, id: F, spre
             *lane = mask.select(splat(value), *lane);
         }
         if features::VOXELS {
-            for lane in &mut s.material[..3] {
-                *lane *= mask.select(shade, F::ONE);
+            let colours = [Channel::Colour, Channel::Emission].map(|channel| channel as usize);
+            for i in colours.into_iter().flat_map(|first| first..first + 3) {
+                s.material[i] *= mask.select(shade, F::ONE);
             }
         }
         burn(material, mask, &mut s);

@@ -170,7 +170,7 @@ pub struct Face {
     pub value: F,
     /// The number of the plane, and the value: equal where one face goes on into the next.
     pub plane: F,
-    /// Factor on the cell's colour.
+    /// Factor on the cell's colour and its own light.
     pub shade: F,
 }
 
