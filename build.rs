@@ -14,6 +14,8 @@ fn main() {
         // Nothing in the file that the system doesn't need, and one segment for code and constants.
         "-Wl,--build-id=none,--no-eh-frame-hdr,--hash-style=gnu",
         "-Wl,-z,norelro,-z,noseparate-code",
+        // Constants of one width beside each other pack 130 bytes better.
+        "-Wl,--sort-section=alignment",
     ] {
         println!("cargo::rustc-link-arg-bin=luc={argument}");
     }

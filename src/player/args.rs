@@ -52,6 +52,10 @@ pub struct Options<'a> {
     pub threads: usize,
     /// Cover the screen.
     pub fullscreen: bool,
+    /// Play no sound.
+    pub mute: bool,
+    /// Write the sound here and open no window; `-` is standard output.
+    pub wav: Option<&'a OsStr>,
 }
 
 /// What a flag asks for.
@@ -70,6 +74,10 @@ enum Flag {
     Output,
     Once,
     Fullscreen,
+    #[cfg(feature = "sound")]
+    Mute,
+    #[cfg(feature = "sound")]
+    Wav,
 }
 
 /// What follows a flag.
@@ -84,31 +92,39 @@ enum Takes {
     Name(Names),
     /// The name of a picture file.
     File,
+    /// The name of a sound file.
+    #[cfg(feature = "sound")]
+    Sound,
 }
 
 /// What a flag is good for.
 #[derive(Clone, Copy, PartialEq)]
 enum For {
     Anything,
+    Pictures,
     Frames,
     Playing,
 }
 
 /// The flags by name.
-const FLAGS: [(&str, Flag, Takes, For); 13] = [
+const FLAGS: &[(&str, Flag, Takes, For)] = &[
     ("--help", Flag::Help, Takes::Nothing, For::Anything),
     ("--version", Flag::Version, Takes::Nothing, For::Anything),
-    ("--frame", Flag::Frame, Takes::Number(0, u64::MAX), For::Anything),
+    ("--frame", Flag::Frame, Takes::Number(0, u64::MAX), For::Pictures),
     ("--from", Flag::From, Takes::Number(0, u64::MAX), For::Playing),
-    ("--threads", Flag::Threads, Takes::Number(1, MOST_THREADS), For::Anything),
-    ("--size", Flag::Size, Takes::Size, For::Anything),
-    ("--quality", Flag::Quality, Takes::Name(quality), For::Anything),
+    ("--threads", Flag::Threads, Takes::Number(1, MOST_THREADS), For::Pictures),
+    ("--size", Flag::Size, Takes::Size, For::Pictures),
+    ("--quality", Flag::Quality, Takes::Name(quality), For::Pictures),
     ("--scene", Flag::Scene, Takes::Name(scene), For::Anything),
     ("--average", Flag::Average, Takes::Number(1, MOST_PATTERNS), For::Frames),
     ("--view", Flag::View, if cfg!(luc_size) { Takes::Nothing } else { Takes::Name(view) }, For::Frames),
     ("-o", Flag::Output, Takes::File, For::Frames),
     ("--once", Flag::Once, Takes::Nothing, For::Playing),
     ("--fullscreen", Flag::Fullscreen, Takes::Nothing, For::Playing),
+    #[cfg(feature = "sound")]
+    ("--mute", Flag::Mute, Takes::Nothing, For::Playing),
+    #[cfg(feature = "sound")]
+    ("--wav", Flag::Wav, Takes::Sound, For::Anything),
 ];
 
 /// Reads the arguments that follow the program's name.
@@ -125,8 +141,10 @@ pub fn parse<'a>(args: &[&'a OsStr]) -> Result<Request<'a>, Text> {
         from: 0,
         threads: 0,
         fullscreen: false,
+        mute: false,
+        wav: None,
     };
-    let (mut windowed, mut still): (&[u8], &[u8]) = (b"", b"");
+    let (mut windowed, mut still, mut seen): (&[u8], &[u8], &[u8]) = (b"", b"", b"");
     let mut args = args.iter();
     while let Some(name) = args.next() {
         let name = name.as_encoded_bytes();
@@ -135,6 +153,7 @@ pub fn parse<'a>(args: &[&'a OsStr]) -> Result<Request<'a>, Text> {
         };
         match good_for {
             For::Anything => {}
+            For::Pictures => seen = name,
             For::Frames => still = name,
             For::Playing => windowed = name,
         }
@@ -161,6 +180,15 @@ pub fn parse<'a>(args: &[&'a OsStr]) -> Result<Request<'a>, Text> {
             Flag::Output => options.output = typed.copied(),
             Flag::Once => options.once = true,
             Flag::Fullscreen => options.fullscreen = true,
+            #[cfg(feature = "sound")]
+            Flag::Mute => options.mute = true,
+            #[cfg(feature = "sound")]
+            Flag::Wav => options.wav = typed.copied(),
+        }
+    }
+    for name in [seen, still, windowed] {
+        if options.wav.is_some() && !name.is_empty() {
+            return Err(join(&[name, b" does nothing for --wav; leave one of them out"]));
         }
     }
     if options.frame.is_none() && !still.is_empty() {
@@ -209,6 +237,8 @@ impl Takes {
             Takes::File => {
                 (typed == b"-" || typed.ends_with(b".png") || typed.ends_with(b".ppm")).then_some(0)?
             }
+            #[cfg(feature = "sound")]
+            Takes::Sound => (typed == b"-" || typed.ends_with(b".wav")).then_some(0)?,
         };
         Some((n, 0))
     }
@@ -223,6 +253,8 @@ impl Takes {
             Takes::Size => join(&[b"a width and height from 1x1 to 7680x4320, such as 1280x720"]),
             Takes::Name(names) => one_of(names),
             Takes::File => join(&[b"a name ending in .png or .ppm, or - for standard output"]),
+            #[cfg(feature = "sound")]
+            Takes::Sound => join(&[b"a name ending in .wav, or - for standard output"]),
         }
     }
 }
@@ -243,6 +275,17 @@ const VIEW_HELP: &[u8] = if cfg!(luc_size) {
     b"  --view NAME      draw a frame's normal, distance (white at 50 units), albedo,
                    sampling or steps (of its rays, white at 128) instead
 "
+};
+
+/// What `--help` says of sound, where there is any.
+const SOUND_HELP: &[u8] = if cfg!(feature = "sound") {
+    b"\
+  --mute           play without sound
+  --wav FILE       write the sound, of --scene or all, and open no window;
+                   .wav, or - for standard output
+"
+} else {
+    b""
 };
 
 /// The text of `--help`.
@@ -273,6 +316,9 @@ Lúč, a ray-traced intro. Esc or closing the window ends it.
   --from N         start playing at frame N, 60 a second
   --once           end instead of looping
   --fullscreen     cover the screen
+",
+        SOUND_HELP,
+        b"\
   --threads N      render on N threads, 1 to 256 (all cores)
   --help           this text
   --version        name and version
@@ -324,7 +370,7 @@ mod tests {
         let text = String::from_utf8(help()).unwrap();
         let default = Quality::PRESETS[Quality::DEFAULT].0;
         assert!(text.contains(&["a frame: ", default].concat()), "{text}");
-        assert!(text.len() < 1400, "{} bytes", text.len());
+        assert!(text.len() < 1600, "{} bytes", text.len());
         assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
     }
 

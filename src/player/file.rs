@@ -103,7 +103,7 @@ fn create(path: &Path) -> Result<File, Error> {
 
 fn cannot(path: &Path, e: Error) -> Text {
     let name = quoted(path.as_os_str().as_encoded_bytes());
-    join(&[b"cannot write ", &name, b": ", &reason(&e), b"; choose another place with -o"])
+    join(&[b"cannot write ", &name, b": ", &reason(&e), b"; choose another place"])
 }
 
 /// The common reasons in words; the standard library's own words would bring its formatting along.

@@ -5,19 +5,29 @@
 //! standard error and code 2. Text is put together from pieces instead of being formatted, because the
 //! formatting machinery alone would cost the packed file several kilobytes.
 
+#[cfg(all(feature = "sound", target_os = "linux"))]
+mod alsa;
 mod args;
 mod clock;
 mod file;
 mod fit;
+#[cfg(target_os = "linux")]
+mod library;
 mod live;
 mod loader;
+mod pace;
 mod snapshot;
+#[cfg(all(feature = "sound", target_os = "linux"))]
+mod sound;
 mod stage;
 mod text;
+#[cfg(feature = "sound")]
+mod wav;
 mod window;
 mod x11;
 
 use args::{Options, Request};
+use file::Target;
 use std::ffi::OsStr;
 use text::Text;
 
@@ -29,10 +39,7 @@ pub fn run(args: &[&OsStr]) -> i32 {
     let done = match args::parse(args) {
         Ok(Request::Help) => file::print(&args::help()),
         Ok(Request::Version) => file::print(concat!("luc ", env!("CARGO_PKG_VERSION"), "\n").as_bytes()),
-        Ok(Request::Run(options)) => pool(&options).and_then(|()| match options.frame {
-            Some(n) => snapshot::write(&options, n),
-            None => window::play(&options),
-        }),
+        Ok(Request::Run(options)) => pool(&options).and_then(|()| perform(&options)),
         Err(sentence) => Err(sentence),
     };
     match done {
@@ -42,6 +49,20 @@ pub fn run(args: &[&OsStr]) -> i32 {
             REFUSED
         }
     }
+}
+
+/// Plays, or writes a picture or the sound.
+fn perform(options: &Options) -> Result<(), Text> {
+    if options.frame.is_none() && options.wav.is_none() {
+        return window::play(options);
+    }
+    let name = snapshot::name(options);
+    let target = Target::find(options.wav.or(options.output).unwrap_or(text::ascii(&name)))?;
+    #[cfg(feature = "sound")]
+    if options.wav.is_some() {
+        return target.write(&wav::bytes(options));
+    }
+    target.write(&snapshot::bytes(options)?)
 }
 
 /// One line on standard error, in one write so that lines of several programs do not mix.

@@ -1,22 +1,24 @@
 //! One frame as a file: no window, no clock, the same bytes on every machine.
 
 use super::args::Options;
-use super::file::Target;
-use super::text::{Text, ascii, join};
+use super::text::{Text, join};
 use luc::show;
 use luc_core::output::{decimal, png, ppm};
 use luc_core::quality::Quality;
 use luc_core::render::{Renderer, View};
 use std::mem::ManuallyDrop;
 
-/// Renders frame `n` as the options say and writes it.
-pub fn write(options: &Options, n: u64) -> Result<(), Text> {
+/// The name of a picture whose name is not given.
+pub fn name(options: &Options) -> Text {
     let mut name = Text::from(*b"frame-");
-    decimal(&mut name, n, 6);
+    decimal(&mut name, options.frame.unwrap_or(0), 6);
     name.extend_from_slice(b".png");
-    let output = options.output.unwrap_or(ascii(&name));
-    let target = Target::find(output)?;
+    name
+}
 
+/// Renders the frame that the options name, as a file.
+pub fn bytes(options: &Options) -> Result<Vec<u8>, Text> {
+    let n = options.frame.unwrap_or(0);
     let (width, height) = options.size;
     let count = width as usize * height as usize;
     let mut pixels = Vec::new();
@@ -38,6 +40,6 @@ pub fn write(options: &Options, n: u64) -> Result<(), Text> {
         _ => show::frame(&mut ManuallyDrop::new(Renderer::default()), n, options.size, quality, &mut pixels),
     }
 
-    let is_png = output.as_encoded_bytes().ends_with(b".png");
-    target.write(&if is_png { png(width, height, &pixels) } else { ppm(width, height, &pixels) })
+    let is_png = options.output.is_none_or(|name| name.as_encoded_bytes().ends_with(b".png"));
+    Ok(if is_png { png(width, height, &pixels) } else { ppm(width, height, &pixels) })
 }

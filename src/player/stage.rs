@@ -9,6 +9,7 @@ use super::args::Options;
 use super::clock::{Clock, until_next};
 use super::fit;
 use super::live::Live;
+use super::pace::Pace;
 use luc::show;
 use luc_core::quality::Quality;
 use luc_core::render::Renderer;
@@ -16,7 +17,7 @@ use std::mem::{ManuallyDrop, swap};
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU32, AtomicUsize, Ordering::Relaxed};
 use std::sync::{Mutex, MutexGuard, PoisonError};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 const DRAFT: usize = 0;
 /// Where live quality starts.
@@ -35,6 +36,8 @@ pub struct Picture {
 
 /// What the rendering job and the window's thread share.
 pub struct Stage {
+    /// The time that has passed.
+    pub pace: Pace,
     clock: Clock,
     size: (usize, usize),
     quality: Option<usize>,
@@ -51,6 +54,7 @@ impl Stage {
     pub fn new(options: &Options, room: (usize, usize)) -> Self {
         let parts = options.scene.map_or(0..show::PARTS.len(), |part| part..part + 1);
         let stage = Stage {
+            pace: Pace::new(),
             clock: Clock {
                 first: show::start(parts.start),
                 length: parts.clone().map(|part| show::PARTS[part].frames).sum(),
@@ -77,6 +81,17 @@ impl Stage {
     /// Frames drawn before the first can be seen, and how many there are to draw, itself among them.
     pub fn progress(&self) -> (usize, usize) {
         (self.prepared.load(Relaxed), self.parts.len() + 1)
+    }
+
+    /// True when all that is drawn before the first frame has been.
+    pub fn is_prepared(&self) -> bool {
+        self.prepared.load(Relaxed) == self.parts.len()
+    }
+
+    /// The parts that play, the first frame among theirs, and how many frames there are, if not without end.
+    pub fn stretch(&self) -> (Range<usize>, u64, Option<u64>) {
+        let Clock { length, from, once, .. } = self.clock;
+        (self.parts.clone(), from % length, once.then_some(length - from % length))
     }
 
     /// True when the last frame of a show played once has been taken.
@@ -110,10 +125,14 @@ impl Stage {
         }
         let mut live = Live::new(MEDIUM, ULTRA);
         let mut last = None;
-        let start = Instant::now();
-        while let Some(n) = self.clock.frame(start.elapsed()) {
+        loop {
+            let Some(elapsed) = self.pace.elapsed() else {
+                std::thread::sleep(Duration::from_millis(1));
+                continue;
+            };
+            let Some(n) = self.clock.frame(elapsed) else { break };
             if last == Some(n) {
-                std::thread::sleep(until_next(start.elapsed()));
+                std::thread::sleep(until_next(elapsed));
                 continue;
             }
             last = Some(n);

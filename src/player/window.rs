@@ -6,6 +6,8 @@
 //! because a key pressed and released between two updates is never seen by asking for its state.
 
 use super::args::Options;
+#[cfg(all(feature = "sound", target_os = "linux"))]
+use super::sound;
 use super::stage::{Picture, Stage};
 use super::text::{Text, join};
 use super::x11::{Screen, no_display};
@@ -42,6 +44,10 @@ pub fn play(options: &Options) -> Result<(), Text> {
 
     let start = Instant::now();
     let stage: &'static Stage = Box::leak(Box::new(Stage::new(options, window.get_size())));
+    #[cfg(all(feature = "sound", target_os = "linux"))]
+    if !options.mute {
+        sound::start(stage);
+    }
     rayon::spawn(|| stage.perform());
 
     let mut picture = Picture::default();

@@ -35,17 +35,15 @@ mod system {
 
 #[cfg(target_os = "linux")]
 mod system {
+    use super::super::library::Library;
     use super::{Text, join, no_display};
-    use std::ffi::{CStr, c_char, c_int, c_long, c_ulong, c_void};
+    use std::ffi::{c_char, c_int, c_long, c_ulong, c_void};
     use std::ptr::{null, null_mut};
 
     unsafe extern "C" {
-        fn dlopen(name: *const c_char, flags: c_int) -> *mut c_void;
-        fn dlsym(library: *mut c_void, name: *const c_char) -> *mut c_void;
         // The standard library's own exit would bring its buffered standard output along.
         safe fn exit(code: c_int) -> !;
     }
-    const RTLD_LAZY: c_int = 1;
 
     type Display = *mut c_void;
     type Id = c_ulong;
@@ -97,7 +95,7 @@ mod system {
     pub struct Screen {
         /// Width and height, if they can be found.
         pub size: Option<(usize, usize)>,
-        library: *mut c_void,
+        library: Library,
         display: Display,
         root: Id,
     }
@@ -105,24 +103,13 @@ mod system {
     impl Screen {
         /// Finds the screen and makes the end of the window or the display a quiet one.
         pub fn find() -> Result<Self, Text> {
-            // SAFETY: the name is a C string; libX11 has no initialiser with requirements. It stays
-            // loaded, because minifb uses it too.
-            let library = unsafe { dlopen(c"libX11.so.6".as_ptr(), RTLD_LAZY) };
-            if library.is_null() {
+            // minifb uses it too.
+            let Some(library) = Library::open(c"libX11.so.6") else {
                 return Err(join(&[b"no display: install libX11, or write a frame with --frame N"]));
-            }
+            };
             let mut screen = Screen { size: None, library, display: null_mut(), root: 0 };
             screen.connect().ok_or_else(no_display)?;
             Ok(screen)
-        }
-
-        /// The function `name` of libX11; `F` must be the type that Xlib.h gives it.
-        unsafe fn function<F: Copy>(&self, name: &CStr) -> Option<F> {
-            const { assert!(size_of::<F>() == size_of::<*mut c_void>()) };
-            // SAFETY: the library is open and the name is a C string.
-            let found = unsafe { dlsym(self.library, name.as_ptr()) };
-            // SAFETY: `F` is a function's type, so says the caller, and as large as a pointer.
-            (!found.is_null()).then(|| unsafe { std::mem::transmute_copy(&found) })
         }
 
         fn connect(&mut self) -> Option<()> {
@@ -134,15 +121,15 @@ mod system {
             const FIRST_SCREEN: c_int = 0;
             // SAFETY: the types are those in Xlib.h.
             unsafe {
-                self.display = self.function::<Open>(c"XOpenDisplay")?(null());
+                self.display = self.library.function::<Open>(c"XOpenDisplay")?(null());
                 if self.display.is_null() {
                     return None;
                 }
-                self.function::<SetError>(c"XSetErrorHandler")?(on_error);
-                self.function::<SetLost>(c"XSetIOErrorHandler")?(on_lost);
-                self.root = self.function::<Root>(c"XDefaultRootWindow")?(self.display);
-                let width = self.function::<Sides>(c"XDisplayWidth")?(self.display, FIRST_SCREEN);
-                let height = self.function::<Sides>(c"XDisplayHeight")?(self.display, FIRST_SCREEN);
+                self.library.function::<SetError>(c"XSetErrorHandler")?(on_error);
+                self.library.function::<SetLost>(c"XSetIOErrorHandler")?(on_lost);
+                self.root = self.library.function::<Root>(c"XDefaultRootWindow")?(self.display);
+                let width = self.library.function::<Sides>(c"XDisplayWidth")?(self.display, FIRST_SCREEN);
+                let height = self.library.function::<Sides>(c"XDisplayHeight")?(self.display, FIRST_SCREEN);
                 self.size = (width > 0 && height > 0).then_some((width as usize, height as usize));
             }
             Some(())
@@ -164,7 +151,7 @@ mod system {
             const FROM_APPLICATION: c_long = 1;
             // SAFETY: the types are those in Xlib.h; the message is as long as an XEvent.
             unsafe {
-                let intern: Intern = self.function(c"XInternAtom")?;
+                let intern: Intern = self.library.function(c"XInternAtom")?;
                 let full = intern(self.display, c"_NET_WM_STATE_FULLSCREEN".as_ptr(), 0);
                 let mut message = ClientMessage {
                     kind: CLIENT_MESSAGE,
@@ -177,14 +164,14 @@ mod system {
                     data: [ADD, full as c_long, 0, FROM_APPLICATION, 0],
                     rest: [0; 12],
                 };
-                self.function::<Send>(c"XSendEvent")?(
+                self.library.function::<Send>(c"XSendEvent")?(
                     self.display,
                     self.root,
                     0,
                     TO_WINDOW_MANAGER,
                     &mut message,
                 );
-                self.function::<Flush>(c"XFlush")?(self.display);
+                self.library.function::<Flush>(c"XFlush")?(self.display);
             }
             Some(())
         }

@@ -2,6 +2,7 @@
 
 use super::paint::{degrees, key, metal, polished, seconds, swing, times, v};
 use super::still::{Lamp, Panel, Still};
+use super::text::{Line, write};
 use glam::{Mat3, Vec3};
 use luc_core::scene::*;
 
@@ -30,8 +31,21 @@ const FIRE: &[Stop] = &[
     Stop { y: 1.0, colour: Vec3::ZERO },
 ];
 
+/// Letters of the line that have appeared, over seconds.
+const SHOWN: [Key; 2] = [key(8.6, 0.0, Ease::Linear), key(10.2, 28.0, Ease::Step)];
+
+/// The line of text before the letters.
+pub const LINE: Line = Line {
+    words: b"64 KB . EVERY RAY ON THE CPU",
+    origin: v(-2.85, 0.08, 4.7),
+    right: 0.036,
+    up: v(0.0, 0.043, 0.0),
+    width: 0.012,
+    colour: times(v(0.55, 0.78, 1.0), 0.85),
+};
+
 /// Where the beam passes at an x.
-const fn at(x: f32) -> Vec3 {
+pub const fn at(x: f32) -> Vec3 {
     let share = (x + 14.0) / 19.2;
     v(x, 3.26 - 2.01 * share, 1.83 - 2.18 * share)
 }
@@ -204,5 +218,6 @@ pub fn scene(frame: u64) -> Scene {
         roll: degrees(-1.2),
         fov: degrees(44.0),
     };
+    write(&mut scene.beams, &LINE, scene.camera.position, track(&SHOWN, t));
     scene
 }

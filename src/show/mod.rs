@@ -4,24 +4,30 @@
 //! pure function of its local frame, so any frame can be rendered on its own and nothing drifts.
 
 mod blobs;
+mod end;
 mod facets;
 mod gold;
 mod luc;
 mod mirror;
 mod paint;
+pub mod score;
 #[cfg(feature = "smoke")]
 mod smoke;
 mod still;
+mod text;
 
 use luc_core::quality::Quality;
 use luc_core::render::Renderer;
 use luc_core::scene::Scene;
+use luc_core::synth::score::Section;
+#[cfg(feature = "sound")]
+use luc_core::synth::stream::Tune;
 
 /// Frames a second.
 pub const FPS: u64 = 60;
 
 /// Frames of a bar of four beats, at 120 beats a minute.
-const BAR: u64 = 2 * FPS;
+pub const BAR: u64 = 2 * FPS;
 
 /// One part of the show.
 pub struct Part {
@@ -31,18 +37,33 @@ pub struct Part {
     pub frames: u64,
     /// The scene at a local frame, `0 <= frame < frames`.
     pub scene: fn(u64) -> Scene,
+    /// What is heard.
+    #[cfg(feature = "sound")]
+    pub section: &'static Section,
+}
+
+/// A part that is as long as its section of the tune.
+const fn part(name: &'static str, section: &'static Section, scene: fn(u64) -> Scene) -> Part {
+    Part {
+        name,
+        frames: section.harmony.len() as u64 * BAR,
+        scene,
+        #[cfg(feature = "sound")]
+        section,
+    }
 }
 
 /// The parts in playing order.
 pub const PARTS: &[Part] = &[
-    Part { name: "luc", frames: 6 * BAR, scene: luc::scene },
-    Part { name: "mirror", frames: 16 * BAR, scene: mirror::scene },
-    Part { name: "gold", frames: 16 * BAR, scene: gold::scene },
-    Part { name: "facets", frames: 12 * BAR, scene: facets::scene },
-    Part { name: "blobs", frames: 10 * BAR, scene: blobs::scene },
+    part("luc", &score::LUC, luc::scene),
+    part("mirror", &score::MIRROR, mirror::scene),
+    part("gold", &score::GOLD, gold::scene),
+    part("facets", &score::FACETS, facets::scene),
+    part("blobs", &score::BLOBS, blobs::scene),
+    part("end", &score::END, end::scene),
     // Last, so that all frames before it are the same without it.
     #[cfg(feature = "smoke")]
-    Part { name: "smoke", frames: 12 * BAR, scene: smoke::scene },
+    part("smoke", &score::SMOKE, smoke::scene),
 ];
 
 /// Length of the whole show in frames; frame n is frame n mod this.
@@ -76,6 +97,27 @@ pub fn scene(n: u64) -> Scene {
     let (part, local) = at(n);
     (PARTS[part].scene)(local)
 }
+
+/// Samples of a frame.
+#[cfg(feature = "sound")]
+pub const SAMPLES: u64 = luc_core::synth::RATE as u64 / FPS;
+
+/// What is heard while some of the parts play in a loop; frame n begins at sample n times [`SAMPLES`].
+#[cfg(feature = "sound")]
+pub fn tune(parts: core::ops::Range<usize>) -> Tune {
+    Tune { score: &score::SCORE, sections: &SECTIONS[parts] }
+}
+
+#[cfg(feature = "sound")]
+static SECTIONS: [&Section; PARTS.len()] = {
+    let mut sections = [PARTS[0].section; PARTS.len()];
+    let mut part = 0;
+    while part < PARTS.len() {
+        sections[part] = PARTS[part].section;
+        part += 1;
+    }
+    sections
+};
 
 /// Renders frame `n` of the show as 0RGB rows, top to bottom, into `pixels` (`width * height`).
 pub fn frame(renderer: &mut Renderer, n: u64, size: (u32, u32), quality: &Quality, pixels: &mut [u32]) {

@@ -10,7 +10,7 @@ use std::path::PathBuf;
 pub const SIZE: (u32, u32) = (320, 180);
 
 /// Part and local frame of the kept pictures.
-pub const FRAMES: [(&str, u64); 24] = [
+pub const FRAMES: [(&str, u64); 27] = [
     ("blobs", 0),     // the drop: the lattice closed
     ("blobs", 400),   // satellites fly
     ("blobs", 1199),  // last frame
@@ -33,12 +33,15 @@ pub const FRAMES: [(&str, u64); 24] = [
     ("facets", 300),  // bays grow
     ("facets", 640),  // all has grown, in shafts of light
     ("facets", 1439), // last frame: the vault
+    ("end", 0),       // first frame: no words yet
+    ("end", 320),     // all words
+    ("end", 479),     // last frame, which Lúč's first follows
     ("smoke", 0),     // the house before the fire
     ("smoke", 421),   // between two steps: the first smoke
 ];
 
 /// Frames whose fingerprints are kept: part, local frame, preset, size.
-pub const FINGERPRINTS: [(&str, u64, &str, (u32, u32)); 26] = [
+pub const FINGERPRINTS: [(&str, u64, &str, (u32, u32)); 28] = [
     ("blobs", 12, "draft", (333, 187)),
     ("blobs", 700, "medium", (320, 180)),
     ("blobs", 950, "ultra", (320, 180)),
@@ -57,6 +60,8 @@ pub const FINGERPRINTS: [(&str, u64, &str, (u32, u32)); 26] = [
     ("gold", 1234, "high", (640, 360)),
     ("gold", 1699, "ultra", (333, 187)),
     ("gold", 1800, "reference", (96, 54)),
+    ("end", 240, "draft", (333, 187)),
+    ("end", 400, "ultra", (320, 180)),
     ("facets", 150, "draft", (333, 187)),
     ("facets", 480, "medium", (320, 180)),
     ("facets", 900, "ultra", (320, 180)),

@@ -4,6 +4,7 @@
 pub mod crossing;
 pub mod golden;
 pub mod picture;
+pub mod sound;
 #[cfg(target_os = "linux")]
 pub mod x11;
 

@@ -5,6 +5,7 @@
 
 use super::{luc, require};
 use std::io::Read;
+use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::{Duration, Instant};
@@ -54,8 +55,14 @@ impl Screen {
 
     /// Starts the player and waits for its window.
     pub fn play(&self, args: &[&str]) -> Player<'_> {
+        self.play_on(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/support/silent.conf")), args)
+    }
+
+    /// Starts the player, with its sound card as the ALSA configuration `card` says, and waits for its window.
+    pub fn play_on(&self, card: &Path, args: &[&str]) -> Player<'_> {
         let mut child = Command::new(luc())
             .args(args)
+            .env("ALSA_CONFIG_PATH", card)
             .env("DISPLAY", self.name())
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
@@ -185,6 +192,11 @@ impl Player<'_> {
 
     /// Waits for the end and checks that it is a quiet one: code 0 and not a word.
     pub fn ends_within(&mut self, how: &str, limit: Duration) {
+        assert_eq!(self.last_words(how, limit), "", "{how}");
+    }
+
+    /// Waits for the end, checks that its code is 0, and returns what the player has said.
+    pub fn last_words(&mut self, how: &str, limit: Duration) -> String {
         let start = Instant::now();
         let status = loop {
             if let Some(status) = self.child.try_wait().unwrap() {
@@ -196,7 +208,8 @@ impl Player<'_> {
         let mut said = String::new();
         self.child.stderr.take().unwrap().read_to_string(&mut said).unwrap();
         self.child.stdout.take().unwrap().read_to_string(&mut said).unwrap();
-        assert_eq!((status.code(), &*said), (Some(0), ""), "{how}");
+        assert_eq!(status.code(), Some(0), "{how}: {said}");
+        said
     }
 }
 

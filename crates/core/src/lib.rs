@@ -49,4 +49,5 @@ pub mod scene;
 pub mod shade;
 pub mod sim;
 pub mod study;
+pub mod synth;
 pub mod trace;

@@ -18,6 +18,7 @@ mod progress;
 mod scale;
 mod sheet;
 mod smoke;
+mod sound;
 mod stats;
 mod subject;
 mod swarm;
@@ -28,7 +29,7 @@ use std::process::exit;
 /// A command: its name, what follows it, what it does, and the function.
 type Command = (&'static str, &'static str, &'static str, fn(&[String]) -> Result<(), String>);
 
-const COMMANDS: [Command; 8] = [
+const COMMANDS: [Command; 9] = [
     (
         "accuracy",
         "[--quick]",
@@ -45,6 +46,7 @@ const COMMANDS: [Command; 8] = [
     ("sheet", "[--part NAME]", "contact sheets in target/sheets", sheet::run),
     ("capture", "[-o FILE] [--shard I/N]", "frames as y4m, to a file or standard output", capture::run),
     ("stats", "[FRAME] [QUALITY] [WxH]", "counters, time and error of one frame", stats::run),
+    ("sound", "[FILE.wav]...", "loudness, peaks and spectrum of the tune, beside those of files", sound::run),
     ("lights", "", "culled against naive small lights", lights::run),
     ("smoke", "", "what the motion, the light and the sight of smoke cost", smoke::run),
 ];

@@ -23,12 +23,21 @@ pub fn beams(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize), tile:
         return;
     }
     let forward = V3::splat(stage.forward());
-    let half = Vec2::splat(0.5 * BLOCK as f32 * stage.pixel);
+    // A square's middle on the plane one unit ahead of the eye, and its half sides.
+    let square = |corner: (usize, usize), side: usize| {
+        let half = 0.5 * side as f32;
+        let middle = stage.on_screen(corner.0 as f32 + half, corner.1 as f32 + half);
+        (middle, Vec2::splat(half * stage.pixel))
+    };
+    let whole = square(corner, TILE);
     for (light, dop) in stage.scene.beams.iter().zip(&stage.beams) {
+        if !dop.meets_rectangle(whole.0, whole.1) {
+            continue;
+        }
         for block in 0..(TILE / BLOCK) * (TILE / BLOCK) {
             let (x, y) = (block % (TILE / BLOCK) * BLOCK, block / (TILE / BLOCK) * BLOCK);
             let (left, top) = ((corner.0 + x) as f32, (corner.1 + y) as f32);
-            let middle = stage.on_screen(left + 0.5 * BLOCK as f32, top + 0.5 * BLOCK as f32);
+            let (middle, half) = square((corner.0 + x, corner.1 + y), BLOCK);
             if !dop.meets_rectangle(middle, half) {
                 continue;
             }

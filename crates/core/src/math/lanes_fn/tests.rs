@@ -82,6 +82,27 @@ fn pow_is_as_exact_as_stated() {
 }
 
 #[test]
+fn sines_of_turns_are_as_exact_as_stated() {
+    let mut worst = 0.0f64;
+    for i in -200_000..=200_000 {
+        let x = i as f32 / 200_000.0 * 0.5;
+        let (got, exact) = (at(sin_turns, x), (f64::from(x) * core::f64::consts::TAU).sin());
+        let error = (f64::from(got) - exact).abs();
+        // At half a turn the exact value is 0, and x itself is rounded.
+        worst = worst.max(error / exact.abs().max(0.05));
+        assert_eq!(got, -at(sin_turns, -x), "odd at {x}");
+        assert!(got.abs() <= 1.0 + 1e-6);
+    }
+    assert!(worst <= 1.2e-6, "{worst:e}");
+    for (x, turn) in [(0.25, 1.0), (-0.25, -1.0), (1.25, 1.0), (1000.75, -1.0), (-3.25, -1.0)] {
+        assert!((at(sin_turns, x) - turn).abs() < 2e-6, "{x}");
+    }
+    for (x, place) in [(0.3, 0.3), (0.7, 0.7f32 - 1.0), (-0.7, 1.0f32 - 0.7), (5.25, 0.25), (-8.0, 0.0)] {
+        assert_eq!(at(wrap, x), place, "{x}");
+    }
+}
+
+#[test]
 fn edge_values_are_as_documented() {
     let (inf, nan) = (f32::INFINITY, f32::NAN);
     for n in -126i32..128 {

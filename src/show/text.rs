@@ -1,0 +1,113 @@
+//! Text as light: letters of straight strokes, each a short beam.
+//!
+//! A letter is drawn on a grid three or four steps wide and five high, corners cut, in one or more
+//! lines of a pen. A beam looks the brighter the more one looks along it; its colour makes up for that,
+//! so that words that lie on a floor are as even as words that stand.
+
+use glam::Vec3;
+use luc_core::scene::Beam;
+
+/// After each space a letter's name, and the points of its lines, x and y; a comma lifts the pen.
+/// The name of Ď is d.
+const FONT: &[u8] = b"\x20 10 A000415253430,0232 B000525342303,2332312000 C3425150401102031 D00052534312000 \
+    E30000535,0323 F000535,0323 G34251504011020313222 H0005,3035,0333 I0005 J3531201001 \
+    K0005,3502,1330 L050030 M0005234540 N00053035 O102031342515040110 P00052534332202 \
+    R00052534332202,1230 S3425150413233231201001 T0545,2520 U050110203135 V052045 W0510243045 Y052245,2220 \
+    63425150401102031322303 432022520 .2222 d00052534312000,071627";
+
+/// Grid steps between two letters.
+const GAP: f32 = 1.7;
+
+/// A line of text that stands or lies somewhere.
+#[derive(Clone, Copy)]
+pub struct Line {
+    pub words: &'static [u8],
+    /// Lower left corner of its first letter, world.
+    pub origin: Vec3,
+    /// A step of the grid to the right, world units along x.
+    pub right: f32,
+    /// A step of the grid up, world.
+    pub up: Vec3,
+    /// Of the strokes, see [`Beam::width`].
+    pub width: f32,
+    pub colour: Vec3,
+}
+
+/// Adds the strokes of the first `shown` letters to `beams`; the last of them is dimmed by the fraction.
+#[inline(never)]
+pub fn write(beams: &mut Vec<Beam>, line: &Line, eye: Vec3, mut shown: f32) {
+    let mut origin = line.origin;
+    for &name in line.words {
+        if shown <= 0.0 {
+            return;
+        }
+        let (mut wide, mut found, mut pen) = (0.0, false, None);
+        let mut i = 0;
+        while i < FONT.len() {
+            let (a, b) = (FONT[i], FONT[i + 1]);
+            i += 1;
+            if a == b',' {
+                pen = None;
+                continue;
+            }
+            i += 1;
+            if a == b' ' {
+                (found, pen) = (b == name, None);
+            } else if found {
+                let step = |c: u8| i32::from(c - b'0') as f32;
+                let to = origin + Vec3::X * (step(a) * line.right) + line.up * step(b);
+                wide = step(a).max(wide);
+                if let Some(from) = pen.replace(to) {
+                    let along: Vec3 = to - from;
+                    let sine = along.normalize_or(Vec3::X).cross((to - eye).normalize()).length();
+                    let colour = line.colour * (shown.min(1.0) * sine);
+                    beams.push(Beam { from, to, width: line.width, colour, fade: 0.0 });
+                }
+            }
+        }
+        origin.x += (wide + GAP) * line.right;
+        shown -= 1.0;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_word_of_the_show_has_its_letters() {
+        let lines = super::super::end::WORDS.into_iter().chain([super::super::luc::LINE.words]);
+        for name in lines.flatten() {
+            assert!(FONT.windows(2).any(|pair| pair == [b' ', *name]), "{}", char::from(*name));
+        }
+    }
+
+    #[test]
+    fn every_letter_lies_on_the_grid_and_in_its_place() {
+        for name in FONT.split(|&b| b == b' ').skip(3).filter_map(|glyph| glyph.first()) {
+            let words = [*name, *name];
+            let line = Line {
+                words: Box::leak(Box::new(words)),
+                origin: Vec3::ZERO,
+                right: 1.0,
+                up: Vec3::Y,
+                width: 0.1,
+                colour: Vec3::ONE,
+            };
+            let (mut one, mut two) = (Vec::new(), Vec::new());
+            write(&mut one, &line, Vec3::new(2.0, 2.0, 1e6), 1.0);
+            write(&mut two, &line, Vec3::new(2.0, 2.0, 1e6), 2.0);
+            let letter = char::from(*name);
+            assert!(!one.is_empty(), "{letter} has no strokes");
+            assert_eq!(two.len(), 2 * one.len(), "{letter} twice");
+            let wide = one.iter().map(|beam| beam.from.x.max(beam.to.x)).fold(0.0, f32::max);
+            for beam in &one {
+                assert!(beam.from.x.min(beam.to.x) >= 0.0 && wide <= 4.0, "{letter} {beam:?}");
+                assert!((0.0..8.0).contains(&beam.from.y) && (0.0..8.0).contains(&beam.to.y), "{letter}");
+                assert!((beam.colour - 1.0).abs().max_element() < 1e-3, "{letter} faces the eye: {beam:?}");
+            }
+            let moved = two[one.len()].from - one[0].from;
+            assert!((moved - Vec3::X * (wide + GAP)).length() < 1e-5, "{letter} moved by {moved}");
+        }
+    }
+}
