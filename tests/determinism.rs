@@ -9,7 +9,7 @@ use luc::show;
 use luc_core::quality::Quality;
 use luc_core::render::Renderer;
 use support::crossing::{self, Backdrop, Thing};
-use support::golden::{self, FINGERPRINTS, FRAMES, SIZE};
+use support::golden::{self, FINGERPRINTS, FRAMES, SIZE, VALUE_SIZE, VALUES};
 use support::picture::{Picture, fingerprint};
 use support::run;
 
@@ -135,6 +135,15 @@ fn the_show_is_an_endless_loop() {
             same(&once, &alone(later, SIZE, &quality), &what, &replay(n, "high", SIZE));
         }
     }
+    // 1 hour, 30 days and 100 years on, at the same place of the loop.
+    for hours in [1, 30 * 24, 100 * 8766] {
+        let frames = hours * 3600 * 60;
+        for n in [0, show::start(1) + 77, show::start(show::PARTS.len() - 1) + 500] {
+            let later = n + frames - frames % show::FRAMES;
+            let what = format!("frame {n} and {later}, {hours} hours on");
+            same(&alone(n, SIZE, &quality), &alone(later, SIZE, &quality), &what, &replay(n, "high", SIZE));
+        }
+    }
     let last = alone(u64::MAX, SIZE, &quality);
     let same_frame = alone(u64::MAX % show::FRAMES, SIZE, &quality);
     same(&same_frame, &last, "frame u64::MAX", &replay(u64::MAX, "high", SIZE));
@@ -207,12 +216,31 @@ fn the_executable_writes_the_golden_frames() {
 }
 
 #[test]
+fn frames_of_all_parts_have_one_value_on_any_number_of_threads() {
+    let kept = std::fs::read_to_string(golden::directory().join("values.txt")).unwrap();
+    for (part, frame) in VALUES {
+        for threads in [1, 2, 3, 8] {
+            let n = golden::global(part, frame);
+            let picture = on_threads(&mut Renderer::default(), threads, n, VALUE_SIZE, "high");
+            let line = golden::line((part, frame, "high", VALUE_SIZE), fingerprint(&picture.pixels));
+            let command = golden::replay(part, frame, "high", VALUE_SIZE);
+            assert!(
+                kept.contains(&line),
+                "values.txt has not, on {threads} threads: {line}  replay: {command}"
+            );
+        }
+    }
+}
+
+#[test]
 fn the_executable_writes_frames_with_the_kept_fingerprints() {
-    let kept = std::fs::read_to_string(golden::directory().join("fingerprints.txt")).unwrap();
-    for frame in FINGERPRINTS.into_iter().filter(|frame| is_there(frame.0)) {
+    let read = |file| std::fs::read_to_string(golden::directory().join(file)).unwrap();
+    let kept = read("fingerprints.txt") + &read("values.txt");
+    let values = VALUES.map(|(part, n)| (part, n, "high", VALUE_SIZE));
+    for frame in FINGERPRINTS.into_iter().chain(values).filter(|frame| is_there(frame.0)) {
         let (part, n, preset, size) = frame;
         let line = golden::line(frame, fingerprint(&executable(part, n, preset, size).pixels));
         let command = golden::replay(part, n, preset, size);
-        assert!(kept.contains(&line), "fingerprints.txt does not hold {line}  replay: {command}");
+        assert!(kept.contains(&line), "no table holds {line}  replay: {command}");
     }
 }

@@ -13,8 +13,9 @@
 //! - any other executable: `LUC_BIN=target/pack/luc cargo test --test determinism`
 mod support;
 
+use luc::show;
 use luc_core::output::png;
-use support::golden::{self, FINGERPRINTS, FRAMES, SIZE};
+use support::golden::{self, FINGERPRINTS, FRAMES, SIZE, VALUE_SIZE, VALUES};
 use support::picture::{Picture, fingerprint};
 
 /// Whether to rewrite the files instead of comparing with them.
@@ -62,25 +63,38 @@ fn every_golden_frame_has_exactly_its_pixels() {
     );
 }
 
-#[test]
-fn frames_of_other_presets_and_sizes_have_their_fingerprints() {
-    let path = golden::directory().join("fingerprints.txt");
-    let lines = FINGERPRINTS.map(|frame| {
-        let (part, n, preset, size) = frame;
-        golden::line(frame, fingerprint(&golden::render(part, n, preset, size).pixels))
-    });
+/// Holds frames against the table in `file`.
+fn have_their_fingerprints(file: &str, frames: &[golden::Frame]) {
+    let path = golden::directory().join(file);
+    let print =
+        |&(part, n, preset, size): &golden::Frame| fingerprint(&golden::render(part, n, preset, size).pixels);
+    let lines: Vec<String> = frames.iter().map(|frame| golden::line(*frame, print(frame))).collect();
     if bless() {
         write(&path, lines.concat().as_bytes());
     }
     let kept = std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
     let wrong: Vec<String> = lines
         .iter()
-        .zip(FINGERPRINTS)
+        .zip(frames)
         .filter(|(line, _)| !kept.contains(line.as_str()))
-        .map(|(line, (part, n, preset, size))| line.clone() + "  " + &golden::replay(part, n, preset, size))
+        .map(|(line, &(part, n, preset, size))| line.clone() + "  " + &golden::replay(part, n, preset, size))
         .collect();
     assert!(wrong.is_empty(), "not in {}:\n{}", path.display(), wrong.join("\n"));
     assert_eq!(kept.lines().count(), lines.len(), "{} holds other frames too", path.display());
+}
+
+#[test]
+fn frames_of_other_presets_and_sizes_have_their_fingerprints() {
+    have_their_fingerprints("fingerprints.txt", &FINGERPRINTS);
+}
+
+/// The table that `tests/matrix.sh` holds other builds against: some frames of every part.
+#[test]
+fn frames_of_all_parts_have_their_one_value() {
+    have_their_fingerprints("values.txt", &VALUES.map(|(part, n)| (part, n, PRESET, VALUE_SIZE)));
+    for part in show::PARTS {
+        assert!(VALUES.iter().any(|(name, _)| *name == part.name), "no frame of {} among them", part.name);
+    }
 }
 
 #[test]

@@ -1,10 +1,16 @@
 //! Blobs: mercury falls into an endless lattice of bronze, which on the drop is cut away around it.
 
 use super::paint::{degrees, key, metal, seconds, swing, times, v};
+use super::score;
 use super::still::{Panel, Still};
 use glam::{Mat3, Vec3};
 use luc_core::math::scalar::exp;
 use luc_core::scene::*;
+use luc_core::synth::track::{Strikes, pulse, strikes};
+
+/// Strikes of kick and crash: light beats with the one, the view widens with the other.
+const KICK: [Strikes; 10] = strikes(&score::SCORE, &score::BLOBS, score::KICK);
+const CRASH: [Strikes; 10] = strikes(&score::SCORE, &score::BLOBS, score::CRASH);
 
 /// Radius of the cut over seconds: it opens with the drop.
 const CUT: [Key; 3] = [key(0.0, 2.4, Ease::Smooth), key(0.5, 5.6, Ease::Smooth), key(20.0, 6.1, Ease::Step)];
@@ -164,14 +170,13 @@ pub fn scene(frame: u64) -> Scene {
         mercury(t),
     ];
     scene.occlusion = 1.6;
-    let since = |period: f32| exp(-(t % period) * 4.0);
     let target = v(0.75 + 0.15 * swing(t, 13.0, 0.0), 0.45, 0.0);
     scene.camera = Camera {
         position: target + v(-0.312, 0.01, 0.95) * track(&DISTANCE, t),
         target,
         roll: degrees(track(&ROLL, t)),
-        fov: degrees(46.0 + 1.5 * since(2.0)),
+        fov: degrees(46.0 + 2.0 * pulse(&CRASH, frame, 4.0)),
     };
-    scene.grade.exposure = 1.0 + 1.5 * exp(-t * 6.0) + 0.08 * since(0.5);
+    scene.grade.exposure = 1.0 + 1.5 * exp(-t * 6.0) + 0.12 * pulse(&KICK, frame, 6.0);
     scene
 }

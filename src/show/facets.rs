@@ -4,13 +4,18 @@
 //! place and grow them. The camera waits at the portal, flies down the nave and looks up.
 
 use super::paint::{bumps, degrees, key, polished, seconds, surface, times, v};
+use super::score;
 use super::still::{Lamp, Still};
 use glam::{Mat3, Vec3};
 use luc_core::math::hash::{hash2, unit};
 use luc_core::math::scalar::sin_cos;
 use luc_core::mesh::{Assembly, Instance, Mesh, lathe};
 use luc_core::scene::*;
+use luc_core::synth::track::{Strikes, pulse, strikes};
 use std::sync::{Arc, OnceLock};
+
+/// Strikes of the kick, with which the sun in the rose beats.
+const KICK: [Strikes; 12] = strikes(&score::SCORE, &score::FACETS, score::KICK);
 
 /// Distance of the piers from the middle of the nave, height of their capitals, and length of a
 /// bay, units.
@@ -269,6 +274,7 @@ pub fn scene(frame: u64) -> Scene {
     s.camera = Camera { position, target, roll: degrees(track(&ROLL, t)), fov: degrees(54.0) };
     for glow in &mut s.background.glows {
         glow.direction = (ROSE - position).normalize();
+        glow.colour *= 1.0 + 0.4 * pulse(&KICK, frame, 7.0);
     }
     s.lights[1].position += position;
     s.meshes = cathedral(t);

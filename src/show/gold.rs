@@ -2,10 +2,16 @@
 //! navy square of two triangles that floats in azure. The last 4 s show how it was sampled.
 
 use super::paint::{degrees, glass, key, metal, orbit, polished, seconds, swing, times, v};
+use super::score;
 use super::still::{Lamp, Panel, Still};
 use glam::{Mat3, Vec3};
 use luc_core::math::scalar::sin_cos;
 use luc_core::scene::*;
+use luc_core::synth::track::{Strikes, pulse, strikes};
+
+/// Strikes of kick and snare: the low sun beats with the one, the light spills over with the other.
+const KICK: [Strikes; 16] = strikes(&score::SCORE, &score::GOLD, score::KICK);
+const SNARE: [Strikes; 16] = strikes(&score::SCORE, &score::GOLD, score::SNARE);
 
 /// Bearing of the camera, degrees over seconds.
 const BEARING: [Key; 2] = [key(0.0, 49.0, Ease::Smooth), key(32.0, -21.0, Ease::Step)];
@@ -94,6 +100,8 @@ pub fn scene(frame: u64) -> Scene {
     ];
     s.triangles =
         vec![Triangle { corners: [a, b, c], material: 2 }, Triangle { corners: [a, c, d], material: 3 }];
+    s.background.glows[0].colour *= 1.0 + 0.3 * pulse(&KICK, frame, 6.0);
+    s.grade.bloom += 0.3 * pulse(&SNARE, frame, 8.0);
     s.overlay = track(&OVERLAY, t);
     s
 }

@@ -1,17 +1,24 @@
 //! Lúč: a cold beam crosses the black and sets three letters on fire, one after another.
 
 use super::paint::{degrees, key, metal, polished, seconds, swing, times, v};
+use super::score;
 use super::still::{Lamp, Panel, Still};
 use super::text::{Line, write};
 use glam::{Mat3, Vec3};
 use luc_core::scene::*;
+use luc_core::synth::track::{Strikes, frame_of, pulse, strikes};
 
-/// Share of the way to the full fire, over seconds since the beam came: 0.8 s, and 10 % too far.
-const SPREAD: [Key; 3] =
-    [key(0.0, 0.0, Ease::Smooth), key(0.8, 1.1, Ease::Smooth), key(1.6, 1.0, Ease::Step)];
+/// Share of the way to the full fire, over seconds since the beam came: a spark on the beat, 0.7 s, and
+/// 10 % too far.
+const SPREAD: [Key; 4] = [
+    key(-1.0, 0.0, Ease::Step),
+    key(0.0, 0.16, Ease::Smooth),
+    key(0.7, 1.1, Ease::Smooth),
+    key(1.5, 1.0, Ease::Step),
+];
 
-/// How far the beam has come before the first letter, x over seconds.
-const HEAD: [Key; 2] = [key(0.0, -4.75, Ease::Linear), key(1.0, -3.46, Ease::Step)];
+/// How far the beam has come before the first letter, x over seconds: faster and faster.
+const HEAD: [Key; 2] = [key(0.0, -4.75, Ease::Ramp), key(CATCH[0], -3.46, Ease::Step)];
 
 /// Light of the night over seconds.
 const NIGHT: [Key; 2] = [key(0.0, 0.2, Ease::Smooth), key(1.0, 1.0, Ease::Step)];
@@ -19,8 +26,12 @@ const NIGHT: [Key; 2] = [key(0.0, 0.2, Ease::Smooth), key(1.0, 1.0, Ease::Step)]
 /// Share of the camera's way over seconds.
 const DOLLY: [Key; 2] = [key(0.0, 0.0, Ease::Smooth), key(12.0, 1.0, Ease::Step)];
 
-/// Seconds at which the letters catch fire.
-const CATCH: [f32; 3] = [1.0, 4.0, 8.0];
+/// Strikes of the bell, which has a note for each letter.
+const BELL: [Strikes; 6] = strikes(&score::SCORE, &score::LUC, score::BELL);
+
+/// Seconds at which the letters catch fire: with the first three notes of the motif, in the third bar.
+const CATCH: [f32; 3] =
+    [seconds(frame_of(&BELL, 2, 0)), seconds(frame_of(&BELL, 2, 1)), seconds(frame_of(&BELL, 2, 2))];
 
 /// Colours of the fire over the distance from where the beam came in.
 const FIRE: &[Stop] = &[
@@ -32,7 +43,7 @@ const FIRE: &[Stop] = &[
 ];
 
 /// Letters of the line that have appeared, over seconds.
-const SHOWN: [Key; 2] = [key(8.6, 0.0, Ease::Linear), key(10.2, 28.0, Ease::Step)];
+const SHOWN: [Key; 2] = [key(8.0, 0.0, Ease::Linear), key(9.6, 28.0, Ease::Step)];
 
 /// The line of text before the letters.
 pub const LINE: Line = Line {
@@ -178,7 +189,8 @@ static STILL: Still = Still {
 /// The scene at a local frame.
 pub fn scene(frame: u64) -> Scene {
     let t = seconds(frame);
-    let flicker = 1.0 + 0.02 * swing(t, 0.13, 0.0) + 0.01 * swing(t, 0.047, 0.3);
+    let flicker =
+        1.0 + 0.02 * swing(t, 0.13, 0.0) + 0.01 * swing(t, 0.047, 0.3) + 0.25 * pulse(&BELL, frame, 5.0);
     let night = track(&NIGHT, t);
     let mut scene = STILL.scene();
 

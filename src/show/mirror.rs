@@ -5,9 +5,14 @@
 //! ember inside. Everything stands on a dark mirror.
 
 use super::paint::{degrees, glass, grain, key, metal, orbit, polished, seconds, swing, times, v};
+use super::score;
 use super::still::{Lamp, Panel, Still};
 use glam::Vec3;
 use luc_core::scene::*;
+use luc_core::synth::track::{Strikes, pulse, strikes};
+
+/// Strikes of the kick, with which the ember glows.
+const KICK: [Strikes; 16] = strikes(&score::SCORE, &score::MIRROR, score::KICK);
 
 /// Seconds between two lifts: four bars.
 const CYCLE: f32 = 8.0;
@@ -138,6 +143,9 @@ pub fn scene(frame: u64) -> Scene {
     s.spheres[1].centre = ember;
     s.spheres[2].centre = ember;
     s.spheres[3].centre = orbit(0.845 - t / 13.0, 2.84, 1.35 + 0.4 * swing(t, 9.0, 0.0));
+    let ember_glows = 1.0 + 0.9 * pulse(&KICK, frame, 7.0);
+    s.lights[0].colour *= ember_glows;
+    s.materials[3].emission *= ember_glows;
     s.lights[0].position = ember + v(0.0, -1.05, 0.5);
     s.cones = vec![
         Cone::between((v(0.0, 2.1, 0.0), 0.34), (Vec3::ZERO, 1.3), [false, false], 0),

@@ -8,7 +8,7 @@ use std::f32::consts::{PI, TAU};
 use super::FPS;
 
 /// Seconds of a local frame.
-pub fn seconds(frame: u64) -> f32 {
+pub const fn seconds(frame: u64) -> f32 {
     frame as f32 / FPS as f32
 }
 

@@ -40,8 +40,11 @@ pub const FRAMES: [(&str, u64); 27] = [
     ("smoke", 421),   // between two steps: the first smoke
 ];
 
-/// Frames whose fingerprints are kept: part, local frame, preset, size.
-pub const FINGERPRINTS: [(&str, u64, &str, (u32, u32)); 28] = [
+/// Part, local frame, preset, size.
+pub type Frame = (&'static str, u64, &'static str, (u32, u32));
+
+/// Frames whose fingerprints are kept.
+pub const FINGERPRINTS: [Frame; 28] = [
     ("blobs", 12, "draft", (333, 187)),
     ("blobs", 700, "medium", (320, 180)),
     ("blobs", 950, "ultra", (320, 180)),
@@ -77,6 +80,29 @@ pub fn in_every_build(part: &str) -> bool {
     part != "smoke"
 }
 
+/// Part and local frame of those whose value is kept for all builds, in `values.txt`.
+pub const VALUES: [(&str, u64); 16] = [
+    ("blobs", 200),
+    ("blobs", 600),
+    ("blobs", 1000),
+    ("luc", 120),
+    ("luc", 360),
+    ("luc", 600),
+    ("mirror", 240),
+    ("mirror", 960),
+    ("mirror", 1680),
+    ("gold", 240),
+    ("gold", 720),
+    ("gold", 1680),
+    ("facets", 180),
+    ("facets", 720),
+    ("facets", 1260),
+    ("end", 240),
+];
+
+/// Size of those.
+pub const VALUE_SIZE: (u32, u32) = (480, 270);
+
 /// Where the pictures and `fingerprints.txt` are kept.
 pub fn directory() -> PathBuf {
     PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/golden"))
@@ -92,8 +118,8 @@ pub fn path(part: &str, frame: u64) -> PathBuf {
     directory().join(name(part, frame) + ".png")
 }
 
-/// One line of `fingerprints.txt`.
-pub fn line((part, frame, preset, (width, height)): (&str, u64, &str, (u32, u32)), print: u64) -> String {
+/// One line of `fingerprints.txt` or `values.txt`.
+pub fn line((part, frame, preset, (width, height)): Frame, print: u64) -> String {
     format!("{} {preset} {width}x{height} {print:016x}\n", name(part, frame))
 }
 

@@ -10,7 +10,7 @@
 //! (triangles of a [`mesh`] by its tree, [`bvh`]), with [`cull`] leaving out what
 //! can't matter → [`shade`] lights it → [`post`] makes pixels, [`output`] files. [`math`] has
 //! everything that would differ between machines, [`parallel`] spreads work over threads,
-//! [`counters`] say what a frame did, [`features`] what an executable can do, and [`kernels`] open
+//! [`synth`] makes the sound, [`counters`] say what a frame did, [`features`] what an executable can do, and [`kernels`] open
 //! each formula to one ray.
 //!
 //! ```

@@ -12,6 +12,7 @@ mod figures;
 mod font;
 mod lights;
 mod metric;
+mod numbers;
 mod plot;
 mod png_file;
 mod progress;
@@ -22,6 +23,7 @@ mod sound;
 mod stats;
 mod subject;
 mod swarm;
+mod values;
 mod view;
 
 use std::process::exit;
@@ -29,7 +31,7 @@ use std::process::exit;
 /// A command: its name, what follows it, what it does, and the function.
 type Command = (&'static str, &'static str, &'static str, fn(&[String]) -> Result<(), String>);
 
-const COMMANDS: [Command; 9] = [
+const COMMANDS: [Command; 11] = [
     (
         "accuracy",
         "[--quick]",
@@ -49,6 +51,8 @@ const COMMANDS: [Command; 9] = [
     ("sound", "[FILE.wav]...", "loudness, peaks and spectrum of the tune, beside those of files", sound::run),
     ("lights", "", "culled against naive small lights", lights::run),
     ("smoke", "", "what the motion, the light and the sight of smoke cost", smoke::run),
+    ("numbers", "[CASES]", "formulas against the truth, as a page and a plot in docs", numbers::run),
+    ("values", "[TABLE]", "frames against the table of their one value", values::run),
 ];
 
 /// The list of commands.

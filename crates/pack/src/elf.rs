@@ -7,11 +7,8 @@
 //! Source: System V ABI, chapters 4 and 5, and its AMD64 supplement.
 
 use crate::Error;
-use crate::codec::format::ELF_HEADERS;
+use crate::codec::format::*;
 use std::ops::Range;
-
-/// The longest program that is packed, bytes. Anything near it starts too slowly to be of use.
-pub const LONGEST: usize = 2 << 20;
 
 const PT_LOAD: u32 = 1;
 const PT_DYNAMIC: u32 = 2;
@@ -172,31 +169,60 @@ fn array_at<const N: usize>(bytes: &[u8], at: usize) -> Result<[u8; N], Error> {
     bytes.get(at..).and_then(|rest| rest.first_chunk()).copied().ok_or(Error::Malformed)
 }
 
-/// The ELF header and the one program header of a packed file: a program at a fixed address,
-/// loaded as a whole, readable and executable.
-pub fn launcher_headers(address: u64, entry: u64, length: u64) -> Vec<u8> {
-    let mut headers = Vec::new();
-    headers.extend(b"\x7fELF\x02\x01\x01\0\0\0\0\0\0\0\0\0");
-    for half in [2u16, 62] {
-        headers.extend(half.to_le_bytes()); // A program at a fixed address, x86-64.
+/// What the headers of a packed file tell.
+#[derive(Default)]
+pub struct Headers<'a> {
+    /// What the program calls itself in messages.
+    pub name: &'a str,
+    /// Length and checksum of the launcher's main part with its header.
+    pub main_length: u32,
+    pub main_checksum: u32,
+    /// Length of the file.
+    pub file: usize,
+}
+
+impl Headers<'_> {
+    /// The ELF header and the one program header of a packed file: a program at a fixed address,
+    /// loaded as a whole, readable and executable.
+    ///
+    /// The system reads neither the first header's last fields, which tell of sections, nor a few
+    /// others; so the second header begins in the former, and the launcher has its own words in the latter.
+    pub fn bytes(&self) -> Vec<u8> {
+        const PF_R: u32 = 4;
+        let mut bytes = Vec::new();
+        bytes.extend(b"\x7fELF\x02\x01\x01\0");
+        let mut name = [0; NAME];
+        for (to, from) in name[..NAME - 1].iter_mut().zip(self.name.bytes()) {
+            *to = from;
+        }
+        bytes.extend(name);
+        for half in [2u16, 62] {
+            bytes.extend(half.to_le_bytes()); // A program at a fixed address, x86-64.
+        }
+        bytes.extend(1u32.to_le_bytes());
+        let entry = LOADED_AT + ELF_HEADERS;
+        for word in [entry, 56, 0] {
+            bytes.extend((word as u64).to_le_bytes()); // Program headers at 56, no section headers.
+        }
+        bytes.extend(0u32.to_le_bytes());
+        for half in [64u16, 56] {
+            bytes.extend(half.to_le_bytes());
+        }
+        // The program header's kind, 1, is also the number of program headers.
+        for word in [PT_LOAD, PF_R | PF_X] {
+            bytes.extend(word.to_le_bytes());
+        }
+        for word in [0, LOADED_AT] {
+            bytes.extend((word as u64).to_le_bytes());
+        }
+        for word in [self.main_length, self.main_checksum] {
+            bytes.extend(word.to_le_bytes());
+        }
+        for word in [self.file, self.file, 0x1000] {
+            bytes.extend((word as u64).to_le_bytes());
+        }
+        bytes
     }
-    headers.extend(1u32.to_le_bytes());
-    for word in [entry, 64, 0] {
-        headers.extend(word.to_le_bytes()); // Program headers at 64, no section headers.
-    }
-    headers.extend(0u32.to_le_bytes());
-    for half in [64u16, 56, 1, 0, 0, 0] {
-        headers.extend(half.to_le_bytes());
-    }
-    const PF_R: u32 = 4;
-    for word in [PT_LOAD, PF_R | PF_X] {
-        headers.extend(word.to_le_bytes());
-    }
-    for word in [0, address, address, length, length, 0x1000] {
-        headers.extend(word.to_le_bytes());
-    }
-    headers.resize(ELF_HEADERS, 0);
-    headers
 }
 
 #[cfg(test)]
@@ -218,10 +244,13 @@ mod tests {
 
     #[test]
     fn a_header_of_its_own_is_a_program() {
-        let mut file = launcher_headers(0x40_0000, 0x40_0080, 129);
+        let headers = Headers { name: "long name", file: 113, ..Headers::default() };
+        let mut file = headers.bytes();
+        assert_eq!(file.len(), ELF_HEADERS);
+        assert_eq!(file[NAME_AT..][..NAME], *b"long na\0");
+        assert_eq!(u64_at(&file, FILE_LENGTH_AT).unwrap(), 113);
         file.push(0xc3);
         let program = Program::new(&file).unwrap();
-        assert_eq!(program.stripped, file);
-        assert_eq!(program.code, Code { range: 0..129, base: 0x40_0000 });
+        assert_eq!(program.code, Code { range: 0..113, base: LOADED_AT as u64 });
     }
 }

@@ -1,8 +1,14 @@
 //! The packers' encoding halves.
 
-use crate::codec::interval::Interval;
+use crate::codec::interval::{NARROW, part};
 use crate::codec::model::Model;
 use crate::codec::small;
+
+/// Told now and then how many bytes of how many are packed.
+pub type Progress = fn(usize, usize);
+
+/// Bytes between two reports of progress.
+const STEP: usize = 4096;
 
 /// Memory of zeros as a model.
 pub fn new_model() -> Box<Model> {
@@ -18,36 +24,43 @@ pub fn new_model() -> Box<Model> {
     }
 }
 
-/// Context mixing: what [`crate::codec::cm::decode`] decodes, and what each byte cost, bits.
+/// Context mixing: what [`crate::codec::cm::decode`] decodes, into `encoder`, with `lesson` in
+/// memory before. What each byte cost, bits. `progress` is told now and then how far it is.
 #[allow(clippy::disallowed_methods, reason = "costs are for reports, whose last digit doesn't matter")]
-pub fn cm(bytes: &[u8]) -> (Vec<u8>, Vec<f32>) {
+pub fn cm(encoder: &mut Encoder, lesson: &[u8], bytes: &[u8], progress: Progress) -> Vec<f32> {
     let mut model = new_model();
-    let mut encoder = Encoder::new();
-    let mut costs = vec![0.0; bytes.len()];
     model.start();
-    for (position, &byte) in bytes.iter().enumerate() {
-        for bit in bits(byte) {
-            let one = model.predict();
-            encoder.bit(bit, one);
-            model.learn(bit);
-            let probability = if bit == 1 { one } else { 65536 - one };
-            costs[position] -= (probability as f32 / 65536.0).log2();
-        }
-        model.end_byte(&bytes[..position + 1]);
+    for &byte in lesson {
+        let mut bits = bits(byte);
+        model.byte(|_| bits.next().unwrap_or(0));
     }
-    (encoder.finish(), costs)
+    let mut costs = vec![0.0; bytes.len()];
+    for (position, (&byte, cost)) in bytes.iter().zip(&mut costs).enumerate() {
+        if position % STEP == 0 {
+            progress(position, bytes.len());
+        }
+        let mut bits = bits(byte);
+        model.byte(|one| {
+            let bit = bits.next().unwrap_or(0);
+            encoder.bit(bit, one);
+            let probability = if bit == 1 { one } else { 65536 - one };
+            *cost -= (probability as f32 / 65536.0).log2();
+            bit
+        });
+    }
+    costs
 }
 
-/// The small coder: what [`small::decode`] decodes.
-pub fn small(bytes: &[u8]) -> Vec<u8> {
+/// The small coder: what [`small::decode`] decodes, into `encoder`.
+pub fn small(encoder: &mut Encoder, bytes: &[u8]) {
     let mut cells = new_cells();
-    let mut model = small::Model::new(&mut cells);
-    let mut encoder = Encoder::new();
-    for bit in bytes.iter().flat_map(|&byte| bits(byte)) {
-        encoder.bit(bit, model.predict());
-        model.learn(bit);
-    }
-    encoder.finish()
+    let mut bits = bytes.iter().flat_map(|&byte| bits(byte));
+    let mut output = vec![0; bytes.len()];
+    small::decode(&mut cells, &mut output, |one| {
+        let bit = bits.next().unwrap_or(0);
+        encoder.bit(bit, one);
+        bit
+    });
 }
 
 /// Memory for the small coder.
@@ -62,33 +75,90 @@ fn bits(byte: u8) -> impl Iterator<Item = u32> {
 }
 
 /// Writes bits for [`crate::codec::interval::Decoder`].
-struct Encoder {
-    interval: Interval,
+///
+/// The lower end of the interval has bytes that are written already, a byte of its own, and 24 bits
+/// more. What is added to it may carry into what is written.
+pub struct Encoder {
+    low: u64,
+    range: u32,
     packed: Vec<u8>,
 }
 
 impl Encoder {
-    fn new() -> Encoder {
-        Encoder { interval: Interval::WHOLE, packed: Vec::new() }
+    /// With nothing coded yet.
+    pub fn new() -> Encoder {
+        Encoder { low: 0, range: NARROW, packed: Vec::new() }
     }
 
     /// A bit that is a one with the probability `one`, in 16 bits.
-    fn bit(&mut self, bit: u32, one: u32) {
-        self.interval.narrow(self.interval.split(one), bit);
-        let mut top = (self.interval.high >> 24) as u8;
-        while self.interval.settled() {
-            self.packed.push(top);
-            top = (self.interval.high >> 24) as u8;
+    pub fn bit(&mut self, bit: u32, one: u32) {
+        let part = part(self.range, one);
+        if bit == 1 {
+            self.range = part;
+        } else {
+            self.add(part);
+            self.range -= part;
+        }
+        while self.range < NARROW {
+            self.range <<= 8;
+            self.shift();
         }
     }
 
+    /// Moves the lower end up.
+    fn add(&mut self, amount: u32) {
+        self.low += u64::from(amount);
+        if self.low >> 32 != 0 {
+            self.low &= 0xffff_ffff;
+            // The interval never ends above 1, so some byte takes the carry.
+            for byte in self.packed.iter_mut().rev() {
+                *byte = byte.wrapping_add(1);
+                if *byte != 0 {
+                    break;
+                }
+            }
+        }
+    }
+
+    /// Writes the byte.
+    fn shift(&mut self) {
+        self.packed.push((self.low >> 24) as u8);
+        self.low = self.low << 8 & 0xffff_ffff;
+    }
+
+    /// Bytes so far.
+    pub fn length(&self) -> usize {
+        self.packed.len()
+    }
+
     /// The code, ended by the fewest bytes that lie in the interval when zeros follow.
-    fn finish(mut self) -> Vec<u8> {
-        let Interval { low, high } = self.interval;
-        let kept = |count: u32| if count == 0 { 0 } else { high & !0 << (32 - 8 * count) };
-        let count = (0..4).find(|&count| kept(count) >= low).unwrap_or(4);
-        self.packed.extend(&high.to_be_bytes()[..count as usize]);
+    pub fn finish(mut self) -> Vec<u8> {
+        // The number with the most zeros at its end that is no less than the lower end.
+        let end = self.low + u64::from(self.range);
+        let up = |zeros: u32| (self.low + (1 << zeros) - 1) >> zeros << zeros;
+        let number = (0..=32).rev().map(up).find(|&number| number < end).unwrap_or(self.low);
+        self.add((number - self.low) as u32);
+        let mut packed = self.finish_in_full();
+        while packed.last() == Some(&0) {
+            packed.pop();
+        }
+        packed
+    }
+
+    /// The code, ended in full so that other data may follow.
+    pub fn finish_in_full(mut self) -> Vec<u8> {
+        for _ in 0..4 {
+            self.shift();
+        }
+        // The first byte is always 0 and carries nothing; the decoder starts behind it.
+        self.packed.remove(0);
         self.packed
+    }
+}
+
+impl Default for Encoder {
+    fn default() -> Encoder {
+        Encoder::new()
     }
 }
 

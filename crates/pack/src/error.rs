@@ -48,7 +48,11 @@ impl fmt::Display for Error {
         match self {
             Error::Empty => write!(f, "the file is empty"),
             Error::TooLong(length) => {
-                write!(f, "{length} bytes are too much to pack, the limit is {}", crate::elf::LONGEST)
+                write!(
+                    f,
+                    "{length} bytes are too much to pack, the limit is {}",
+                    crate::codec::format::LONGEST
+                )
             }
             Error::NotElf => write!(f, "not an ELF file"),
             Error::NotX86_64 => write!(f, "not a 64-bit x86-64 ELF file"),

@@ -19,8 +19,8 @@ mod error;
 pub mod report;
 pub mod size_build;
 
-use codec::format::{CHECKSUM, ELF_HEADERS, HEADER, Header, LOADED_AT, NAME, NEEDS_AVX2};
-use codec::{checksum::crc32, filter};
+use codec::format::{ELF_HEADERS, Header, NEEDS_AVX2};
+use codec::{checksum::checksum, filter};
 pub use error::Error;
 
 /// How to compress.
@@ -61,10 +61,25 @@ const OPENER: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/opener"));
 pub struct Options<'a> {
     /// How to compress.
     pub method: Method,
-    /// What the launcher calls the program in messages; at most 12 bytes count.
+    /// What the launcher calls the program in messages; at most 7 bytes count.
     pub name: &'a str,
     /// Whether to start on processors with AVX2 only, and to say so on others.
     pub needs_avx2: bool,
+    /// Told how far it is.
+    pub progress: encode::Progress,
+}
+
+/// For [`Options::progress`]: no one wants to know.
+pub fn silent(_: usize, _: usize) {}
+
+/// For [`Options::progress`]: a line on standard error, if that is a terminal and the program so
+/// long that it takes a while.
+pub fn percent(done: usize, all: usize) {
+    use std::io::{IsTerminal, stderr};
+    const WORTH_TELLING: usize = 50_000;
+    if all >= WORTH_TELLING && stderr().is_terminal() {
+        eprint!("\rpacking: {:3} %\x1b[K\r", done * 100 / all);
+    }
 }
 
 /// A packed program.
@@ -82,7 +97,7 @@ pub struct Packed {
 
 /// Packs a program; `file` is its ELF file.
 pub fn pack_elf(file: &[u8], method: Method) -> Result<Packed, Error> {
-    pack_elf_as(file, &Options { method, name: "program", needs_avx2: false })
+    pack_elf_as(file, &Options { method, name: "program", needs_avx2: false, progress: silent })
 }
 
 /// Packs a program with all choices.
@@ -98,40 +113,39 @@ pub fn pack_elf_as(file: &[u8], options: &Options) -> Result<Packed, Error> {
         let start = base.wrapping_add(code.range.start as u32);
         filter::filter(&mut filtered[code.range.clone()], start, filter::Direction::Pack);
     }
-    let (payload, bits) = match options.method {
-        Method::Cm => encode::cm(&filtered),
-        Method::Lzma => (encode::lzma(&filtered), Vec::new()),
-        Method::Raw => (filtered, Vec::new()),
-    };
-
-    let main = encode::small(launcher);
-    let mut name = [0; NAME];
-    for (to, from) in name.iter_mut().zip(options.name.bytes()) {
-        *to = from;
-    }
     let header = Header {
-        output_crc: crc32(&stripped),
-        output: stripped.len() as u32,
-        main: launcher.len() as u32,
-        main_coded: main.len() as u32,
-        payload: payload.len() as u32,
+        checksum: checksum(&stripped),
+        length: stripped.len() as u32,
         flags: if options.needs_avx2 { NEEDS_AVX2 } else { 0 },
         code_start: code.range.start as u32,
         code_end: code.range.end as u32,
         base,
-        name,
     };
-    let opener = OPENER.len().next_multiple_of(4);
-    let length = ELF_HEADERS + opener + HEADER + main.len() + payload.len() + CHECKSUM;
-    let address = LOADED_AT as u64;
-    let mut file = elf::launcher_headers(address, address + ELF_HEADERS as u64, length as u64);
-    file.extend(OPENER);
-    file.resize(ELF_HEADERS + opener, 0);
-    file.extend(header.bytes());
-    file.extend(&main);
-    file.extend(&payload);
-    file.extend(crc32(&file).to_le_bytes());
-    Ok(Packed { file, stripped, payload: payload.len(), bits })
+    let mut main = launcher.to_vec();
+    main.extend(header.words().iter().flat_map(|word| word.to_le_bytes()));
+    let mut encoder = encode::Encoder::new();
+    encode::small(&mut encoder, &main);
+    let before = encoder.length();
+    let mut bits = Vec::new();
+    let coded = match options.method {
+        Method::Cm => {
+            bits = encode::cm(&mut encoder, &main, &filtered, options.progress);
+            encoder.finish()
+        }
+        method => {
+            let mut coded = encoder.finish_in_full();
+            coded.extend(if method == Method::Lzma { encode::lzma(&filtered) } else { filtered });
+            coded
+        }
+    };
+    let headers = elf::Headers {
+        name: options.name,
+        main_length: main.len() as u32,
+        main_checksum: checksum(&main),
+        file: ELF_HEADERS + OPENER.len() + coded.len(),
+    };
+    let file = [&headers.bytes(), OPENER, &coded].concat();
+    Ok(Packed { file, stripped, payload: coded.len() - before, bits })
 }
 
 /// Writes an executable file, all of it or nothing: under another name beside it, then renamed.

@@ -64,8 +64,10 @@ fn a_library_is_no_program() {
 fn bad_arguments() {
     let directory = scratch("bad_arguments");
     std::fs::write(directory.join("program"), program()).unwrap();
-    let cases: [(&[&str], &str); 8] = [
+    let cases: [(&[&str], &str); 10] = [
         (&[], "which file"),
+        (&["program", "-o", "out", "--report"], "--report"),
+        (&["program", "-o", "out", "--report", "r", "--method", "lzma"], "--method"),
         (&["program"], "-o OUT"),
         (&["program", "more", "-o", "out"], "more"),
         (&["program", "-o"], "-o"),
@@ -78,6 +80,35 @@ fn bad_arguments() {
         one_sentence(&luc_pack(&directory, arguments), part);
     }
     assert_eq!(std::fs::read_dir(&directory).unwrap().count(), 1, "a file is left behind");
+}
+
+#[test]
+fn a_report_tells_what_each_function_costs() {
+    let directory = scratch("report");
+    std::fs::write(directory.join("program"), program()).unwrap();
+    let arguments = ["program", "-o", "out", "--report", "new/place"];
+    for _ in 0..2 {
+        let result = luc_pack(&directory, &arguments);
+        assert!(result.status.success() && result.errors.is_empty(), "{result:?}");
+        let table = String::from_utf8(result.output).unwrap();
+        assert!(table.contains("  main\n") && table.contains("packed payload"), "{table}");
+    }
+    let page = std::fs::read_to_string(directory.join("new/place/report.html")).unwrap();
+    assert!(page.contains("Since the last report") && page.contains("<td>main"));
+    assert!(directory.join("out").exists() && directory.join("new/place/report.tsv").exists());
+}
+
+#[test]
+fn a_comparison_is_a_table() {
+    let directory = scratch("comparison");
+    std::fs::write(directory.join("program"), program()).unwrap();
+    let result = luc_pack(&directory, &["--compare", "program", "program"]);
+    assert!(result.status.success() && result.errors.is_empty(), "{result:?}");
+    let table = String::from_utf8(result.output).unwrap();
+    let columns = |line: &str| line.matches('|').count();
+    assert_eq!(table.lines().map(columns).collect::<Vec<_>>(), [9; 4], "{table}");
+    one_sentence(&luc_pack(&directory, &["--compare"]), "which file");
+    one_sentence(&luc_pack(&directory, &["--compare", "missing"]), "missing");
 }
 
 #[test]

@@ -56,10 +56,10 @@ fn damage_behind_the_launcher_is_told() {
         for i in 0..20 {
             let mut bytes = file.clone();
             let at = payload + numbers.below(packed.payload);
-            match i % 3 {
-                0 => bytes[at] ^= 1 << numbers.below(8),
-                1 => bytes.truncate(at),
-                _ => bytes.extend(b"more"),
+            if i % 2 == 0 {
+                bytes[at] ^= 1 << numbers.below(8);
+            } else {
+                bytes.truncate(at);
             }
             let result = result_of(&path, &bytes).unwrap();
             assert_eq!(result.status.code(), Some(3), "{name}: {result:?}");

@@ -107,7 +107,7 @@ fn a_processor_without_avx2_is_told() {
     }
     let directory = scratch("avx2");
     let packed = directory.join("packed");
-    let options = Options { method: Method::Raw, name: "luc", needs_avx2: true };
+    let options = Options { method: Method::Raw, name: "luc", needs_avx2: true, progress: luc_pack::silent };
     write_executable(&packed, &pack_elf_as(program(), &options).unwrap().file).unwrap();
     let result = run(Command::new("qemu-x86_64").args(["-cpu", "Nehalem"]).arg(&packed)).unwrap();
     assert_eq!(result.status.code(), Some(2));

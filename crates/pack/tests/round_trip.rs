@@ -1,13 +1,20 @@
 //! What the coders decode is what was encoded, whatever it is; and decoding anything ends.
 
-use luc_pack::codec::{cm, filter, lzma, small};
-use luc_pack::encode;
+use luc_pack::codec::{cm, filter, interval::Decoder, lzma, small};
+use luc_pack::encode::{self, Encoder};
 use proptest::prelude::*;
 
+/// What the model knows before, as it knows the launcher.
+const LESSON: &[u8] = b"\x48\x8b\x44\x24\x08\xe8";
+
 fn through_cm(bytes: &[u8]) -> Vec<u8> {
-    let mut output = vec![0; bytes.len()];
-    cm::decode(&mut encode::new_model(), &encode::cm(bytes).0, &mut output);
-    output
+    let mut encoder = Encoder::new();
+    encode::cm(&mut encoder, LESSON, bytes, luc_pack::silent);
+    let coded = encoder.finish();
+    let mut memory = [LESSON, &vec![0; bytes.len()]].concat();
+    let mut decoder = Decoder::new(&coded);
+    cm::decode(&mut encode::new_model(), &mut memory, LESSON.len(), |one| decoder.bit(one));
+    memory[LESSON.len()..].to_vec()
 }
 
 fn through_lzma(bytes: &[u8]) -> Vec<u8> {
@@ -17,8 +24,14 @@ fn through_lzma(bytes: &[u8]) -> Vec<u8> {
 }
 
 fn through_small(bytes: &[u8]) -> Vec<u8> {
+    let mut encoder = Encoder::new();
+    encode::small(&mut encoder, bytes);
+    let mut coded = encoder.finish_in_full();
+    coded.extend(b"rest");
     let mut output = vec![0; bytes.len()];
-    small::decode(&mut encode::new_cells(), &encode::small(bytes), &mut output);
+    let mut decoder = Decoder::new(&coded);
+    small::decode(&mut encode::new_cells(), &mut output, |one| decoder.bit(one));
+    assert_eq!(decoder.rest(), b"rest");
     output
 }
 
@@ -54,9 +67,11 @@ proptest! {
     #[test]
     fn decoding_nonsense_fills_the_output(bytes: Vec<u8>, length in 0..5000usize) {
         let mut output = vec![0; length];
-        cm::decode(&mut encode::new_model(), &bytes, &mut output);
+        let mut decoder = Decoder::new(&bytes);
+        cm::decode(&mut encode::new_model(), &mut output, 0, |one| decoder.bit(one));
         lzma::decode(&bytes, &mut output);
-        small::decode(&mut encode::new_cells(), &bytes, &mut output);
+        let mut decoder = Decoder::new(&bytes);
+        small::decode(&mut encode::new_cells(), &mut output, |one| decoder.bit(one));
         filter::filter(&mut output, 0, filter::Direction::Unpack);
     }
 }

@@ -2,13 +2,14 @@
 
 use super::first;
 use crate::math::lanes::{F, V3, splat};
+use crate::math::lanes_f64::{in_f64, splat_d};
 use crate::shade;
 use glam::Vec3;
 use std::f32::consts::FRAC_1_PI;
 
-/// Squared sine from a cosine.
+/// Squared sine from a cosine, rounded once.
 fn sine2(cos: F) -> F {
-    (F::ONE - cos) * (F::ONE + cos)
+    in_f64([cos], |[cos]| (splat_d(1.0) - cos) * (splat_d(1.0) + cos))
 }
 
 /// GGX's distribution D, per steradian, of facets with unit normal `h` about the unit normal `n`; `alpha` is
@@ -37,7 +38,7 @@ pub fn smith_g1(cos: f32, alpha: f32) -> f32 {
 pub fn smith_g2(n_l: f32, n_v: f32, alpha: f32) -> f32 {
     let (l, v) = (splat(n_l), splat(n_v));
     // The engine's V has 4 n·l n·v divided out.
-    first((shade::visibility(l, v, splat(alpha)) * (l + l)) * (v + v))
+    first(in_f64([shade::visibility(l, v, splat(alpha)), l, v], |[shown, l, v]| splat_d(4.0) * shown * l * v))
 }
 
 /// Beckmann's distribution D, per steradian, of facets with unit normal `h` about the unit normal `n`; `m`

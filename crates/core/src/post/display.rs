@@ -5,7 +5,7 @@
 //! goes in, so a table of it is exact at its entries. 128 entries per octave, the nearest taken, stay
 //! within 0.001 of it, a quarter of an output step, and the three tables fit the first-level cache.
 
-use crate::math::lanes::{F, V3, splat, splat_u};
+use crate::math::lanes::{F, V3, max, splat, splat_u};
 use crate::math::scalar::{pow, srgb_encode};
 use crate::scene::Grade;
 use glam::Vec3;
@@ -53,8 +53,8 @@ impl Display {
 
 #[inline(never)]
 fn lookup(curve: &[f32], x: F) -> F {
-    // fast_max takes its second operand if the first is NaN.
-    let x = x.fast_max(splat(f32::from_bits(FIRST))).fast_min(splat(15.999));
+    // The maximum is its second operand if the first is NaN.
+    let x = max(x, splat(f32::from_bits(FIRST))).fast_min(splat(15.999));
     // Half an entry on, so that cutting the lower bits off takes the nearest.
     const HALF: u32 = 1 << (22 - FINE);
     let at = (x.to_bits() - splat_u(FIRST - HALF)) >> (23 - FINE);

@@ -6,6 +6,7 @@
 
 use super::fresnel::schlick;
 use crate::math::lanes::{F, V3, splat};
+use crate::math::lanes_f64::in_f64;
 use crate::math::lanes_fn::sin_cos;
 use crate::math::sampling::basis;
 use crate::scene::Channel;
@@ -15,9 +16,11 @@ use std::f32::consts::TAU;
 /// π D of microfacets whose normals have this cosine, and squared sine, to the surface's.
 #[inline(always)]
 pub fn distribution(sine2: F, cos: F, alpha: F) -> F {
-    // Divided before it is squared: 8 u at most, of 11 u the other way.
-    let q = sine2 / alpha + alpha * cos * cos;
-    F::ONE / (q * q)
+    in_f64([sine2, cos, alpha], |[sine2, cos, alpha]| {
+        let along = alpha * cos;
+        let q = alpha / (sine2 + along * along);
+        q * q
+    })
 }
 
 /// √(α² sin² + cos²): 2 cos / (cos + this) of the facets are seen under a cosine.

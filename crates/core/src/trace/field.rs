@@ -8,7 +8,7 @@
 
 use super::{Rays8, Span};
 use crate::counters::{Counter, Counters};
-use crate::math::lanes::{F, INFINITY, TRUE, V3, splat};
+use crate::math::lanes::{F, INFINITY, TRUE, V3, max, splat};
 use crate::quality::Quality;
 use crate::scene::{Field, Form, Join, Node};
 use glam::Vec3;
@@ -193,7 +193,8 @@ pub fn field(rays: &Rays8, field: &Field, limit: F, quality: &Quality, counters:
         let arrived = active & value.simd_lt(epsilon * (F::ONE + t * speed));
         // The last step's slope carries it the rest of the way, if it has one.
         let slope = (last - value) / (t - last_t);
-        let rest = (value / slope).fast_max(F::ZERO).fast_min((value + value).fast_max(F::ZERO) / speed);
+        // Without a slope to speak of it is no number, which the maximum takes for 0 on every processor.
+        let rest = max(value / slope, F::ZERO).fast_min((value + value).fast_max(F::ZERO) / speed);
         t = arrived.select(t + rest, t);
         found |= arrived;
         active &= !arrived;

@@ -83,7 +83,7 @@ fn shaded(mut scene: Scene, shading: Shading, bounces: u32) -> Scene {
             material.exponent = (2.0 / (m * m) - 2.0).max(1.0);
         }
     }
-    Scene { shading, bounces, ..scene }
+    Scene { shading, bounces, rough: true, ..scene }
 }
 
 /// The light that the truth of shading has.

@@ -21,8 +21,8 @@ pub struct Effort {
     pub passes: usize,
     /// Processor time after which a setting gets no further pass, ms.
     pub enough: f64,
-    /// Patterns that the truth averages.
-    pub patterns: u32,
+    /// Samples of a pixel of the truth besides the first.
+    pub samples: u32,
     /// Consecutive frames over which flicker is measured.
     pub flicker: u64,
 }
@@ -43,19 +43,22 @@ pub fn draw(renderer: &mut Renderer, subject: &Subject, n: u64, setting: &Settin
 }
 
 /// The setting that draws the truth.
-pub fn truth_setting(truth: Truth, patterns: u32) -> Setting {
+///
+/// All samples lie within their pixel: averaging patterns, which moves the whole picture by up to half a
+/// pixel, would make the truth a blurred one.
+pub fn truth_setting(truth: Truth, samples: u32) -> Setting {
     let [.., (_, reference)] = Quality::PRESETS;
-    let (change, average) = match truth {
-        Truth::Show => (Change::None, patterns),
-        Truth::Light => (FULL_LIGHT, 1),
+    let (change, quality) = match truth {
+        Truth::Show => (Change::None, Quality { samples, edge_samples: samples, ..reference }),
+        Truth::Light => (FULL_LIGHT, reference),
     };
-    Setting { label: String::new(), quality: Quality { average, ..reference }, change, scale: 1.0 }
+    Setting { label: String::new(), quality, change, scale: 1.0 }
 }
 
 /// Draws the truth of a frame.
 pub fn truth(subject: &Subject, n: u64, effort: &Effort, truth: Truth) -> Picture {
     let mut picture = Picture::new(effort.size);
-    draw(&mut Renderer::default(), subject, n, &truth_setting(truth, effort.patterns), &mut picture);
+    draw(&mut Renderer::default(), subject, n, &truth_setting(truth, effort.samples), &mut picture);
     picture
 }
 
@@ -166,14 +169,20 @@ pub fn flicker_frames(subject: &Subject, n: u64, count: u64) -> std::ops::Range<
     end.saturating_sub(count)..end
 }
 
-/// Truths of those frames.
+/// Samples of a pixel of `reference` besides the first.
+pub fn reference_samples() -> u32 {
+    let [.., (_, reference)] = Quality::PRESETS;
+    reference.samples
+}
+
+/// Truths of those frames: `reference`.
 pub fn flicker_truths(
     subject: &Subject,
     n: u64,
     effort: &Effort,
     mut tell: impl FnMut(&str),
 ) -> Vec<Picture> {
-    let setting = truth_setting(Truth::Show, 1);
+    let setting = truth_setting(Truth::Show, reference_samples());
     let mut renderer = Renderer::default();
     let mut one = |n| {
         tell(&format!("{} {n}: truth for flicker", subject.name));

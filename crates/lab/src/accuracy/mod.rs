@@ -2,7 +2,7 @@
 //!
 //! Every part of the show, several frames each, is drawn under every position of every knob of
 //! [`Quality`] alone and under the six presets. Times are the median of interleaved passes in
-//! processor time, errors are against `reference` with several patterns averaged. Rows go to a CSV
+//! processor time, errors are against `reference` with 64 samples of every pixel. Rows go to a CSV
 //! file as they are found, so that an interruption keeps them and the next run goes on; plots,
 //! pictures and a page are made from it.
 
@@ -15,6 +15,7 @@ mod pictures;
 mod plots;
 mod table;
 
+use crate::metric::Picture;
 use crate::progress::Progress;
 use crate::subject::Subject;
 use knobs::{Knob, On, Truth, knobs};
@@ -23,7 +24,7 @@ use luc_core::quality::Quality;
 use luc_core::render::Renderer;
 use measure::{Effort, Task};
 use rayon::{ThreadPool, ThreadPoolBuilder};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use table::{Figure, Row, Table};
 
 /// What the command was asked for.
@@ -32,6 +33,12 @@ struct Options {
     fresh: bool,
     /// Draw plots and page from what was measured before.
     pages_only: bool,
+    /// Keep times and counts and tell errors again.
+    errors_only: bool,
+    /// Measure flicker.
+    flicker: bool,
+    /// Frames of each part.
+    frames: Option<u64>,
     out: Option<PathBuf>,
     part: Option<String>,
     threads: usize,
@@ -51,6 +58,9 @@ fn options(args: &[String]) -> Result<Options, lexopt::Error> {
         quick: false,
         fresh: false,
         pages_only: false,
+        errors_only: false,
+        flicker: true,
+        frames: None,
         out: None,
         part: None,
         threads: 1,
@@ -61,6 +71,9 @@ fn options(args: &[String]) -> Result<Options, lexopt::Error> {
             Long("quick") => options.quick = true,
             Long("fresh") => options.fresh = true,
             Long("pages") => options.pages_only = true,
+            Long("errors") => options.errors_only = true,
+            Long("no-flicker") => options.flicker = false,
+            Long("frames") => options.frames = Some(parser.value()?.parse_with(crate::args::count)?.into()),
             Long("out") => options.out = Some(parser.value()?.into()),
             Long("part") => options.part = Some(parser.value()?.parse()?),
             Long("threads") => options.threads = parser.value()?.parse()?,
@@ -77,6 +90,7 @@ struct Study {
     knobs: Vec<Knob>,
     effort: Effort,
     frames: u64,
+    flicker: bool,
     pool: ThreadPool,
 }
 
@@ -93,9 +107,9 @@ pub fn run(args: &[String]) -> Result<(), String> {
     let mut subjects = parts.clone();
     subjects.push(Subject::fireflies());
     let effort = if options.quick {
-        Effort { size: (160, 90), passes: 1, enough: 0.0, patterns: 1, flicker: 3 }
+        Effort { size: (160, 90), passes: 1, enough: 0.0, samples: 31, flicker: 3 }
     } else {
-        Effort { size: (320, 180), passes: 5, enough: 600.0, patterns: 4, flicker: 30 }
+        Effort { size: (320, 180), passes: 5, enough: 600.0, samples: 63, flicker: 30 }
     };
     let effort = Effort { size: options.size.unwrap_or(effort.size), ..effort };
     let out = options.out.clone().unwrap_or_else(|| if options.quick { QUICK_OUT } else { OUT }.into());
@@ -105,20 +119,24 @@ pub fn run(args: &[String]) -> Result<(), String> {
         subjects,
         knobs: knobs(),
         effort,
-        frames: if options.quick { 1 } else { FRAMES },
+        frames: options.frames.unwrap_or(if options.quick { 1 } else { FRAMES }),
+        flicker: options.flicker,
         pool: pool.map_err(|_| format!("{threads} threads can't be started"))?,
     };
     let conditions = format!(
-        "# {}x{}; {threads} thread(s); at most {} passes; truth of {} patterns; flicker over {} frames; engine {:016x}",
+        "# {}x{}; {threads} thread(s); at most {} passes; truth of {} samples; flicker over {} frames; engine {:016x}",
         effort.size.0,
         effort.size.1,
         effort.passes,
-        effort.patterns,
+        effort.samples + 1,
         effort.flicker,
         fingerprint()
     );
     let file = out.join("study.csv");
     if !options.pages_only {
+        if options.errors_only {
+            return study.again(&file, &conditions);
+        }
         let mut table = Table::open(&file, &conditions, options.fresh)?;
         study.measure(&mut table)?;
         growth::measure(&study.pool, &parts, &out, &conditions, options.quick, options.fresh)?;
@@ -201,6 +219,40 @@ impl Study {
         Ok(())
     }
 
+    /// Tells the errors of all rows of a table again, as after a change of the truth.
+    fn again(&self, file: &Path, conditions: &str) -> Result<(), String> {
+        let (_, rows) = table::read(file)?;
+        let mut progress = Progress::new(rows.len() as f64);
+        let mut table = Table::open(file, conditions, true)?;
+        let mut known: Option<(String, u64, Truth, Picture)> = None;
+        let truth_of = |row: &Row| self.knobs.iter().find(|k| k.name == row.knob).map(|k| k.truth);
+        let mut order: Vec<&Row> = rows.iter().collect();
+        order.sort_by_key(|row| truth_of(row) == Some(Truth::Light));
+        for row in order {
+            progress.step(1.0, &format!("{} {}: {} {}", row.part, row.frame, row.knob, row.value));
+            let mut row = row.clone();
+            let subject = self.subjects.iter().find(|s| s.name == row.part);
+            let knob = self.knobs.iter().find(|k| k.name == row.knob && k.on == On::Show);
+            let setting = knob.and_then(|k| k.settings.iter().find(|s| s.label == row.value));
+            if let (Some(subject), Some(knob), Some(setting)) = (subject, knob, setting) {
+                let kept = known
+                    .take()
+                    .filter(|k| (k.0.as_str(), k.1, k.2) == (subject.name, row.frame, knob.truth));
+                let truth = match kept {
+                    Some((.., truth)) => truth,
+                    None => measure::truth(subject, row.frame, &self.effort, knob.truth),
+                };
+                let mut picture = Picture::new(self.effort.size);
+                measure::draw(&mut Renderer::default(), subject, row.frame, setting, &mut picture);
+                measure::fill_errors(&mut row, &truth, &picture);
+                known = Some((row.part.clone(), row.frame, knob.truth, truth));
+            }
+            table.add(row)?;
+        }
+        progress.end("errors told again");
+        Ok(())
+    }
+
     fn measure_frame(
         &self,
         subject: &Subject,
@@ -217,14 +269,14 @@ impl Study {
             needs(truth).then(|| measure::truth(subject, n, effort, truth))
         });
         let timings = measure::time(&self.pool, subject, n, tasks, effort, |what| progress.step(0.0, what));
-        let flickers = middle && tasks.iter().any(|(knob, _)| knob.samples);
+        let flickers = self.flicker && middle && tasks.iter().any(|(knob, _)| knob.samples);
         let moving = match flickers {
             true => measure::flicker_truths(subject, n, effort, |what| progress.step(0.0, what)),
             false => Vec::new(),
         };
         for (task, timing) in tasks.iter().zip(&timings) {
             let (knob, setting) = *task;
-            let mut picture = crate::metric::Picture::new(effort.size);
+            let mut picture = Picture::new(effort.size);
             measure::draw(&mut Renderer::default(), subject, n, setting, &mut picture);
             let mut row = Row {
                 part: subject.name.into(),

@@ -175,19 +175,26 @@ fn text(data: &Data) -> String {
             .collect::<String>();
         t += "</div>\n";
     }
-    t + &how(&data.conditions) + "</body></html>\n"
+    t + &how(data) + "</body></html>\n"
 }
 
-fn how(conditions: &str) -> String {
+fn how(data: &Data) -> String {
     let [.., (reference, _)] = Quality::PRESETS;
+    let frames = |part: &String| {
+        let mut frames: Vec<u64> = data.show_rows().filter(|r| r.part == *part).map(|r| r.frame).collect();
+        frames.sort_unstable();
+        frames.dedup();
+        format!("{part} {frames:?}")
+    };
+    let frames = data.parts().iter().map(frames).collect::<Vec<_>>().join(", ");
     format!(
-        "<h2 id=\"how\">How it was measured</h2>\n<p>Conditions: {}.</p>\n\
+        "<h2 id=\"how\">How it was measured</h2>\n<p>Conditions: {}. Frames: {frames}.</p>\n\
          <p>A modest size, so that the study takes minutes; the plot over sizes tells how to go on from there. \
          Times are processor time, which the machine's other work disturbs little, as medians of passes in \
          which all settings take turns. Rays and steps are counted and don't depend on the machine.</p>\n\
-         <p>The truth is <code>{reference}</code>, with several sample patterns averaged, so that \
-         <code>{reference}</code> itself has an error; for flicker and for the reflection models it is one \
-         pattern of it. Presets without edge samples differ from it by the stairs at edges more than by \
+         <p>The truth is <code>{reference}</code> with 64 samples of every pixel, four times as many as its own, \
+         so that <code>{reference}</code> itself has an error; for flicker and for the reflection models it is \
+         <code>{reference}</code>. Presets without edge samples differ from it by the stairs at edges more than by \
          anything else: the column <i>sampling dB</i> is the PSNR against the same setting with every pixel \
          traced, in display values. Means over parts are geometric for times, counts and errors, so that \
          no part outweighs the others.</p>\n\
@@ -195,6 +202,6 @@ fn how(conditions: &str) -> String {
          is of luma, FLIP at 67 pixels per degree, <i>greatest</i> the greatest difference of a channel's \
          display value, <i>flicker</i> the root mean square of the difference between the change from frame to \
          frame and the true change, in display values. Film grain and overlays are switched off.</p>\n",
-        conditions.trim_start_matches("# ")
+        data.conditions.trim_start_matches("# ")
     )
 }

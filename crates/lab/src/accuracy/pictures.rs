@@ -44,7 +44,7 @@ pub fn write(subjects: &[Subject], out: &Path, quick: bool) -> Result<(), String
             draw(&mut Renderer::default(), subject, n, setting, &mut picture);
             picture
         };
-        let truth = shot(SIZE, &truth_setting(Truth::Show, if quick { 1 } else { 4 }));
+        let truth = shot(SIZE, &truth_setting(Truth::Show, if quick { 15 } else { 63 }));
         png_file::picture(&path("truth"), &truth)?;
         for (name, quality) in mapped() {
             let setting = Setting { label: String::new(), quality, change: Change::None, scale: 1.0 };

@@ -5,6 +5,7 @@
 //! consecutive bytes of it, and joining them is `cat`.
 
 mod shard;
+mod wav;
 mod y4m;
 
 use crate::progress::{Progress, duration};
@@ -34,13 +35,15 @@ struct Options {
     out: PathBuf,
     shard: Option<Shard>,
     chunk: u64,
+    /// Where the sound goes.
+    wav: Option<PathBuf>,
 }
 
 fn options(args: &[String]) -> Result<Options, lexopt::Error> {
     let mut parser = lexopt::Parser::from_args(args);
     let (mut from, mut to, mut part) = (None, None, None);
     let (mut size, mut preset, mut average) = ((1280, 720), String::from("high"), 1);
-    let (mut out, mut shard, mut chunk) = (PathBuf::from("show.y4m"), None, show::FPS);
+    let (mut out, mut shard, mut chunk, mut sound) = (PathBuf::from("show.y4m"), None, show::FPS, None);
     while let Some(arg) = parser.next()? {
         match arg {
             Long("from") => from = Some(parser.value()?.parse::<u64>()?),
@@ -51,6 +54,7 @@ fn options(args: &[String]) -> Result<Options, lexopt::Error> {
             Long("average") => average = parser.value()?.parse_with(crate::args::count)?,
             Long("shard") => shard = Some(parser.value()?.parse_with(Shard::read)?),
             Long("chunk") => chunk = parser.value()?.parse_with(crate::args::count)?.into(),
+            Long("wav") => sound = Some(PathBuf::from(parser.value()?)),
             Short('o') => out = parser.value()?.into(),
             _ => return Err(arg.unexpected()),
         }
@@ -65,13 +69,16 @@ fn options(args: &[String]) -> Result<Options, lexopt::Error> {
         return Err("--shard writes files; name one with -o".into());
     }
     let note = format!("{preset},{average},{}-{}", frames.start, frames.end);
-    Ok(Options { capture: Capture { frames, size, quality, note }, out, shard, chunk })
+    Ok(Options { capture: Capture { frames, size, quality, note }, out, shard, chunk, wav: sound })
 }
 
 /// Runs the command with the arguments after `capture`.
 pub fn run(args: &[String]) -> Result<(), String> {
-    let Options { capture, out, shard, chunk } = options(args).map_err(|e| e.to_string())?;
+    let Options { capture, out, shard, chunk, wav } = options(args).map_err(|e| e.to_string())?;
     let start = Instant::now();
+    if let Some(path) = &wav {
+        wav::save(path, &capture.frames)?;
+    }
     match shard {
         Some(shard) => capture.chunks(&out, shard, chunk)?,
         None if out == Path::new("-") => capture.stream()?,
@@ -83,16 +90,17 @@ pub fn run(args: &[String]) -> Result<(), String> {
     match shard {
         Some(Shard { count, .. }) => eprintln!("when all {count} shards are done: cat {name}.* > {name}"),
         None if out == Path::new("-") => {}
-        None => eprintln!("{}", ffmpeg(&name.to_string())),
+        None => eprintln!("{}", ffmpeg(&name.to_string(), wav.as_deref())),
     }
     Ok(())
 }
 
 /// The line that makes a film of the file.
-fn ffmpeg(name: &str) -> String {
+fn ffmpeg(name: &str, wav: Option<&Path>) -> String {
     let film = name.strip_suffix(".y4m").unwrap_or(name);
+    let sound = wav.map_or(String::new(), |wav| format!("-i {} -c:a aac -b:a 256k ", wav.display()));
     format!(
-        "ffmpeg -i {name} -c:v libx264 -preset slow -crf 16 -pix_fmt yuv420p -color_primaries bt709 \
+        "ffmpeg -i {name} {sound}-c:v libx264 -preset slow -crf 16 -pix_fmt yuv420p -color_primaries bt709 \
          -color_trc iec61966-2-1 -colorspace bt709 -color_range tv -movflags +faststart {film}.mp4"
     )
 }

@@ -1,12 +1,12 @@
 //! `cargo pack`: builds the intro for size and packs it into one file under 65,536 bytes.
 
 use lexopt::prelude::*;
-use luc_pack::report::{LIMIT, Report, costs::Costs, page, symbols};
-use luc_pack::{Error, Method, Options, check, pack_elf_as, size_build, write_executable};
+use luc_pack::report::{self, LIMIT, Report, history};
+use luc_pack::{Error, Method, Options, check, pack_elf_as, percent, size_build, write_executable};
 use std::process::ExitCode;
 
 const HELP: &str = "\
-cargo pack [--check] [--report] [--method cm|lzma|raw]
+cargo pack [--check] [--report] [--history] [--method cm|lzma|raw]
 
 Builds the intro for size and packs it. Writes target/pack/luc, the packed file, and
 target/pack/luc-safe, the same program unpacked, and prints what became of each byte.
@@ -14,17 +14,21 @@ target/pack/luc-safe, the same program unpacked, and prints what became of each 
       --check        run both files too, and compare what they do
       --report       print what each crate, module and function costs packed, and write
                      target/pack/report.html, which also shows what changed since the last
+      --history      add this commit's sizes to docs/size-history.csv, and draw them
+                     in docs/size-history.svg
       --method NAME  cm: context mixing, smallest (default); lzma: starts faster;
                      raw: no compression
   -h, --help         this text
 
-Exit code 1: over 65,536 bytes, or the packed file does something else than the unpacked one.
+Exit code 1: over 65,536 bytes, or it calls the platform's libm, which differs between machines,
+or the packed file does something else than the unpacked one.
 Exit code 2: it can't be built.
 ";
 
 struct Arguments {
     check: bool,
     report: bool,
+    history: bool,
     method: Method,
 }
 
@@ -50,12 +54,13 @@ fn fail(sentence: &str, code: u8) -> ExitCode {
 }
 
 fn arguments() -> Result<Option<Arguments>, lexopt::Error> {
-    let mut arguments = Arguments { check: false, report: false, method: Method::Cm };
+    let mut arguments = Arguments { check: false, report: false, history: false, method: Method::Cm };
     let mut parser = lexopt::Parser::from_env();
     while let Some(argument) = parser.next()? {
         match argument {
             Long("check") => arguments.check = true,
             Long("report") => arguments.report = true,
+            Long("history") => arguments.history = true,
             Long("method") => {
                 let name = parser.value()?.string()?;
                 arguments.method =
@@ -75,21 +80,21 @@ fn pack(arguments: &Arguments) -> Result<Option<String>, Error> {
     let output = root.join("target/pack");
     let linked = size_build::build(&root, &output)?;
     let linked = std::fs::read(&linked).map_err(Error::file(&linked))?;
-    let packed = pack_elf_as(&linked, &Options { method: arguments.method, name: "luc", needs_avx2: true })?;
+    let options = Options { method: arguments.method, name: "luc", needs_avx2: true, progress: percent };
+    let packed = pack_elf_as(&linked, &options)?;
     let (file, safe) = (output.join("luc"), output.join("luc-safe"));
     write_executable(&safe, &packed.stripped)?;
     write_executable(&file, &packed.file)?;
 
+    if let Some(complaint) = check::libm(&linked)? {
+        return Ok(Some(complaint));
+    }
     let report = Report::new(linked.len(), &packed);
     if arguments.report && !packed.bits.is_empty() {
-        let symbols = symbols::symbols(&linked, packed.stripped.len())?;
-        let costs = Costs::new(&symbols, &packed.bits);
-        print!("{costs}");
-        let (list, html) = (output.join("report.tsv"), output.join("report.html"));
-        let last = std::fs::read_to_string(&list).unwrap_or_default();
-        let text = page::page(&report, &costs, &symbols, &packed.bits, &last);
-        std::fs::write(&html, text).map_err(Error::file(&html))?;
-        std::fs::write(&list, page::list(&costs)).map_err(Error::file(&list))?;
+        print!("{}", report::write(&output, &linked, &packed)?);
+    }
+    if arguments.history {
+        history::record(&root, &report)?;
     }
     print!("{report}");
     if report.total > LIMIT {

@@ -1,18 +1,23 @@
 //! `luc-pack`: packs any x86-64 Linux program.
 
 use lexopt::prelude::*;
-use luc_pack::{Error, Method, Options, pack_elf_as, write_executable};
+use luc_pack::report::{self, Report};
+use luc_pack::{Error, Method, Options, pack_elf_as, percent, write_executable};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 const HELP: &str = "\
-luc-pack FILE -o OUT [--method cm|lzma|raw]
+luc-pack FILE -o OUT [--method cm|lzma|raw] [--report DIR]
+luc-pack --compare FILE...
 
 Packs the x86-64 Linux program FILE into the executable OUT.
 
   -o, --output OUT   where to write
       --method NAME  cm: context mixing, smallest (default); lzma: starts faster;
                      raw: no compression
+      --report DIR   print what each crate, module and function costs packed, and write
+                     DIR/report.html, with a map of all bytes; best for a program with symbols
+      --compare      print what gzip, zstd, xz, LZMA and context mixing make of the files
   -h, --help         this text
 ";
 
@@ -20,24 +25,34 @@ struct Arguments {
     input: PathBuf,
     output: PathBuf,
     method: Method,
+    report: Option<PathBuf>,
+}
+
+enum Task {
+    Pack(Arguments),
+    Compare(Vec<PathBuf>),
 }
 
 fn main() -> ExitCode {
-    let arguments = match arguments() {
-        Ok(Some(arguments)) => arguments,
+    let task = match task() {
+        Ok(Some(task)) => task,
         Ok(None) => {
             print!("{HELP}");
             return ExitCode::SUCCESS;
         }
         Err(error) => return fail(&format!("{error} (--help tells more)")),
     };
-    match pack(&arguments) {
+    let (result, input) = match &task {
+        Task::Pack(arguments) => (pack(arguments), &arguments.input),
+        Task::Compare(files) => (report::compare::compare(files), &files[0]),
+    };
+    match result {
         Ok(report) => {
             println!("{report}");
             ExitCode::SUCCESS
         }
         Err(error @ Error::File(..)) => fail(&error.to_string()),
-        Err(error) => fail(&format!("{}: {error}", arguments.input.display())),
+        Err(error) => fail(&format!("{}: {error}", input.display())),
     }
 }
 
@@ -46,32 +61,48 @@ fn fail(sentence: &str) -> ExitCode {
     ExitCode::from(2)
 }
 
-fn arguments() -> Result<Option<Arguments>, lexopt::Error> {
-    let (mut input, mut output, mut method) = (None, None, Method::Cm);
+fn task() -> Result<Option<Task>, lexopt::Error> {
+    let (mut files, mut output, mut method, mut report) = (Vec::new(), None, Method::Cm, None);
+    let mut compares = false;
     let mut parser = lexopt::Parser::from_env();
     while let Some(argument) = parser.next()? {
         match argument {
-            Value(file) if input.is_none() => input = Some(file.into()),
+            Value(file) if files.is_empty() || compares => files.push(PathBuf::from(file)),
+            Long("compare") => compares = true,
             Short('o') | Long("output") => output = Some(parser.value()?.into()),
             Long("method") => {
                 let name = parser.value()?.string()?;
                 method = Method::named(&name).ok_or(format!("no method '{name}': cm, lzma or raw"))?;
             }
+            Long("report") => report = Some(parser.value()?.into()),
             Short('h') | Long("help") => return Ok(None),
             other => return Err(other.unexpected()),
         }
     }
-    let input = input.ok_or("which file is to be packed?")?;
+    if files.is_empty() {
+        return Err("which file is to be packed?".into());
+    }
+    if compares {
+        return Ok(Some(Task::Compare(files)));
+    }
+    let input = files.swap_remove(0);
     let output = output.ok_or("where to? -o OUT is missing")?;
-    Ok(Some(Arguments { input, output, method }))
+    if report.is_some() && method != Method::Cm {
+        return Err("--report tells what context mixing costs: leave out --method".into());
+    }
+    Ok(Some(Task::Pack(Arguments { input, output, method, report })))
 }
 
 fn pack(arguments: &Arguments) -> Result<String, Error> {
     let file = std::fs::read(&arguments.input).map_err(Error::file(&arguments.input))?;
     let name = arguments.output.file_name().unwrap_or_default().to_string_lossy();
-    let options = Options { method: arguments.method, name: &name, needs_avx2: false };
+    let options = Options { method: arguments.method, name: &name, needs_avx2: false, progress: percent };
     let packed = pack_elf_as(&file, &options)?;
     write_executable(&arguments.output, &packed.file)?;
+    if let Some(directory) = &arguments.report {
+        print!("{}", report::write(directory, &file, &packed)?);
+        print!("{}", Report::new(file.len(), &packed));
+    }
     let (before, after) = (file.len(), packed.file.len());
     Ok(format!("{before} bytes, {} stripped, {after} packed", packed.stripped.len()))
 }

@@ -1,23 +1,21 @@
 //! Decodes what was packed by the method `cm`: the bits are the arithmetic decoder's, what they
 //! mean is the model's.
 
-use super::interval::Decoder;
 use super::model::Model;
 
-/// Decodes `input` until `output` is full. `model` is new, that is all zero.
-pub fn decode(model: &mut Model, input: &[u8], output: &mut [u8]) {
-    let mut decoder = Decoder::new(input);
+/// Fills `memory` from `known` on with what `coder` decodes; it is told how likely a bit is a one, in
+/// 16 bits, and tells which it is. `model` is new, that is all zero. What is in memory before
+/// is machine code too (the launcher's), from which the model learns what such code looks like.
+pub fn decode(model: &mut Model, memory: &mut [u8], known: usize, mut coder: impl FnMut(u32) -> u32) {
     model.start();
-    for position in 0..output.len() {
-        let mut byte = 1;
-        while byte < 256 {
-            let bit = decoder.bit(model.predict());
-            model.learn(bit);
-            byte = byte << 1 | bit;
-        }
-        if let Some(place) = output.get_mut(position) {
-            *place = byte as u8;
-        }
-        model.end_byte(output.get(..position + 1).unwrap_or(&[]));
+    for (position, place) in memory.iter_mut().enumerate() {
+        let mut lesson = u32::from(*place);
+        *place = model.byte(|one| {
+            if position >= known {
+                return coder(one);
+            }
+            lesson <<= 1;
+            lesson >> 8 & 1
+        });
     }
 }

@@ -18,9 +18,8 @@ pub enum Direction {
     Unpack,
 }
 
-/// Filters `code` in place; `address` is the virtual address of its first byte.
-pub fn filter(code: &mut [u8], address: u32, direction: Direction) {
-    let mut walker = Walker::START;
+/// Filters `code` in place; `address` is the virtual address of its first byte, `walker` new.
+pub fn filter_with(walker: &mut Walker, code: &mut [u8], address: u32, direction: Direction) {
     let mut at = 0;
     while at < code.len() {
         let ahead = code.get_mut(at..).and_then(|rest| rest.first_chunk_mut::<4>());
@@ -44,6 +43,12 @@ pub fn filter(code: &mut [u8], address: u32, direction: Direction) {
             at += 1;
         }
     }
+}
+
+/// Filters `code` in place; `address` is the virtual address of its first byte.
+pub fn filter(code: &mut [u8], address: u32, direction: Direction) {
+    let mut walker = Walker::START;
+    filter_with(&mut walker, code, address, direction);
 }
 
 #[cfg(test)]

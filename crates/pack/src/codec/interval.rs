@@ -1,77 +1,60 @@
 //! Arithmetic coding: a sequence of bits and their probabilities as one long number.
 //!
-//! A carryless range coder: `low..=high` is what is left of the 32-bit unit interval. Each bit
-//! divides it by the predicted probability, the code lies in the part of the bit that was coded,
-//! and as soon as the top bytes of both ends agree they are shifted out. The input past its end
-//! reads as zeros, so decoding never fails: damaged input only gives wrong bits.
+//! A range coder. What is left of the unit interval has a width of 24 to 32 bits, the range. Each bit divides
+//! it by the predicted probability, and the code lies in the part of the bit that was coded: the decoder
+//! keeps the distance from the part's lower end. When the range becomes narrow, a byte more is read.
+//! The input past its end reads as zeros, so decoding never fails: damaged input only gives wrong
+//! bits.
 //!
-//! Source: the coder of Matt Mahoney's lpaq1.
+//! Source: G. N. N. Martin, Range encoding (1979), as in Igor Pavlov's LZMA.
 
-/// The interval, for coder and decoder.
-pub struct Interval {
-    /// The lower end.
-    pub low: u32,
-    /// The upper end, which belongs to it.
-    pub high: u32,
-}
+/// The range below which the next byte is read.
+pub const NARROW: u32 = 1 << 24;
 
-impl Interval {
-    /// Everything.
-    pub const WHOLE: Interval = Interval { low: 0, high: u32::MAX };
-
-    /// The last number of the part for a one bit, whose probability in 16 bits is `one`.
-    pub fn split(&self, one: u32) -> u32 {
-        let range = u64::from(self.high - self.low);
-        self.low + ((range * u64::from(one)) >> 16) as u32
-    }
-
-    /// Keeps the part of `bit`.
-    pub fn narrow(&mut self, split: u32, bit: u32) {
-        if bit == 1 { self.high = split } else { self.low = split + 1 }
-    }
-
-    /// Shifts out the top byte if both ends agree on it.
-    pub fn settled(&mut self) -> bool {
-        let settled = (self.low ^ self.high) >> 24 == 0;
-        if settled {
-            self.low <<= 8;
-            self.high = self.high << 8 | 255;
-        }
-        settled
-    }
+/// The width of the part for a one bit, whose probability in 16 bits is `one`.
+pub fn part(range: u32, one: u32) -> u32 {
+    ((u64::from(range) * u64::from(one)) >> 16) as u32
 }
 
 /// Reads bits back.
+#[repr(C)]
 pub struct Decoder<'a> {
-    interval: Interval,
-    input: &'a [u8],
+    range: u32,
     code: u32,
+    input: core::slice::Iter<'a, u8>,
 }
 
 impl<'a> Decoder<'a> {
-    /// At the start of `input`.
+    /// At the start of `input`. The range of 1 is widened three times before the first bit, which
+    /// reads the first three bytes.
     pub fn new(input: &'a [u8]) -> Decoder<'a> {
-        let mut decoder = Decoder { interval: Interval::WHOLE, input, code: 0 };
-        for _ in 0..4 {
-            decoder.next();
-        }
-        decoder
-    }
-
-    fn next(&mut self) {
-        let (&byte, rest) = self.input.split_first().unwrap_or((&0, &[]));
-        self.input = rest;
-        self.code = self.code << 8 | u32::from(byte);
+        Decoder { range: 1, code: 0, input: input.iter() }
     }
 
     /// The next bit, which is a one with the probability `one`, in 16 bits.
     pub fn bit(&mut self, one: u32) -> u32 {
-        let split = self.interval.split(one);
-        let bit = u32::from(self.code <= split);
-        self.interval.narrow(split, bit);
-        while self.interval.settled() {
-            self.next();
+        self.widen();
+        let part = part(self.range, one);
+        if self.code < part {
+            self.range = part;
+            1
+        } else {
+            self.code -= part;
+            self.range -= part;
+            0
         }
-        bit
+    }
+
+    fn widen(&mut self) {
+        while self.range < NARROW {
+            self.code = self.code << 8 | self.input.next().map_or(0, |&byte| u32::from(byte));
+            self.range <<= 8;
+        }
+    }
+
+    /// What lies behind this code, if that was ended in full.
+    pub fn rest(&mut self) -> &'a [u8] {
+        self.widen();
+        self.input.as_slice()
     }
 }

@@ -15,13 +15,24 @@ const LIMIT: f32 = 11.5;
 ///
 /// `exp(-x)` is `(1 - x / 1024)` to the power 1024, by ten squarings: off by up to 6 % at the
 /// ends, which doesn't matter, and the same on every machine, which does.
+#[cfg(not(luc_part = "main"))]
 #[inline(never)]
-pub fn squash(x: f32) -> f32 {
+#[cfg_attr(luc_part = "opener", unsafe(no_mangle))]
+pub extern "C" fn luc_squash(x: f32) -> f32 {
     let mut power = 1.0 - x.clamp(-LIMIT, LIMIT) * (1.0 / 1024.0);
     for _ in 0..10 {
         power *= power;
     }
     1.0 / (1.0 + power)
+}
+#[cfg(not(luc_part = "main"))]
+pub use luc_squash as squash;
+
+// The launcher's main part calls that of the opener.
+#[cfg(luc_part = "main")]
+unsafe extern "C" {
+    #[link_name = "luc_squash"]
+    pub safe fn squash(x: f32) -> f32;
 }
 
 /// Steps of the table that inverts [`squash`].
@@ -36,7 +47,7 @@ impl Stretch {
         let mut x = -LIMIT;
         for (step, value) in self.0.iter_mut().enumerate() {
             let middle = (step as f32 + 0.5) * (1.0 / STEPS as f32);
-            while x < LIMIT && squash(x) < middle {
+            while squash(x) < middle {
                 x += 0.005;
             }
             *value = x;
@@ -55,70 +66,54 @@ impl Stretch {
 #[repr(C, align(16))]
 pub struct Four([f32; 4]);
 
-#[cfg(target_arch = "x86_64")]
-mod lanes {
-    use super::Four;
-    use core::arch::x86_64::*;
-
-    impl Four {
-        /// `self + a * b`, rounded twice.
-        #[inline(always)]
-        pub fn plus_product(self, a: Four, b: Four) -> Four {
-            // SAFETY: `Four` and `__m128` are both 16 bytes of four floats.
-            unsafe {
-                let [sum, a, b] = core::mem::transmute::<[Four; 3], [__m128; 3]>([self, a, b]);
-                core::mem::transmute(_mm_add_ps(sum, _mm_mul_ps(a, b)))
-            }
-        }
-    }
-}
-
-#[cfg(not(target_arch = "x86_64"))]
 impl Four {
+    /// These numbers.
+    pub fn of(numbers: [f32; 4]) -> Four {
+        Four(numbers)
+    }
+
+    /// The same number in all lanes.
+    #[inline(always)]
+    pub fn all(x: f32) -> Four {
+        #[cfg(target_arch = "x86_64")]
+        // SAFETY: `Four` and `__m128` are both 16 bytes of four floats.
+        unsafe {
+            core::mem::transmute(core::arch::x86_64::_mm_set1_ps(x))
+        }
+        #[cfg(not(target_arch = "x86_64"))]
+        Four([x; 4])
+    }
+
     /// `self + a * b`, rounded twice.
-    pub fn plus_product(self, a: Four, b: Four) -> Four {
+    #[inline(always)]
+    fn plus_product(self, a: Four, b: Four) -> Four {
+        #[cfg(target_arch = "x86_64")]
+        // SAFETY: `Four` and `__m128` are both 16 bytes of four floats.
+        unsafe {
+            use core::arch::x86_64::{__m128, _mm_add_ps, _mm_mul_ps};
+            let [sum, a, b] = core::mem::transmute::<[Four; 3], [__m128; 3]>([self, a, b]);
+            core::mem::transmute(_mm_add_ps(sum, _mm_mul_ps(a, b)))
+        }
+        #[cfg(not(target_arch = "x86_64"))]
         Four(core::array::from_fn(|lane| self.0[lane] + a.0[lane] * b.0[lane]))
     }
 }
 
-impl Four {
-    /// The same number in all lanes.
-    pub fn all(x: f32) -> Four {
-        Four([x; 4])
+/// The inner product.
+pub fn dot<const N: usize>(a: &[Four; N], b: &[Four; N]) -> f32 {
+    let mut sum = Four::all(0.0);
+    for (a, b) in a.iter().zip(b) {
+        sum = sum.plus_product(*a, *b);
     }
-
-    fn sum(self) -> f32 {
-        let [a, b, c, d] = self.0;
-        (a + b) + (c + d)
-    }
+    let [a, b, c, d] = sum.0;
+    (a + b) + (c + d)
 }
 
-/// Up to `4 * N` opinions, or their weights.
-#[derive(Clone, Copy)]
-pub struct Vector<const N: usize>(pub [Four; N]);
-
-impl<const N: usize> Vector<N> {
-    /// The inner product.
-    pub fn dot(&self, other: &Vector<N>) -> f32 {
-        let mut sum = Four::all(0.0);
-        for (a, b) in self.0.iter().zip(&other.0) {
-            sum = sum.plus_product(*a, *b);
-        }
-        sum.sum()
-    }
-
-    /// `self + factor * other`, in place.
-    pub fn add_scaled(&mut self, factor: f32, other: &Vector<N>) {
-        let factor = Four::all(factor);
-        for (a, b) in self.0.iter_mut().zip(&other.0) {
-            *a = a.plus_product(factor, *b);
-        }
-    }
-
-    /// The numbers one by one.
-    pub fn numbers_mut(&mut self) -> &mut [[f32; 4]; N] {
-        // SAFETY: `Four` is `repr(C)` around four floats and at least as aligned as they are.
-        unsafe { &mut *(&raw mut self.0).cast() }
+/// `to + factor * along`, in place.
+pub fn move_along<const N: usize>(to: &mut [Four; N], factor: f32, along: &[Four; N]) {
+    let factor = Four::all(factor);
+    for (to, along) in to.iter_mut().zip(along) {
+        *to = to.plus_product(factor, *along);
     }
 }
 
@@ -139,10 +134,10 @@ mod tests {
 
     #[test]
     fn the_product_is_that_of_plain_numbers() {
-        let mut a = Vector::<2>([Four::all(0.5); 2]);
-        let b = Vector::<2>([Four([1.0, 2.0, 3.0, 4.0]), Four([5.0, 6.0, 7.0, 8.0])]);
-        assert_eq!(a.dot(&b), 18.0);
-        a.add_scaled(2.0, &b);
-        assert_eq!(a.numbers_mut()[1], [10.5, 12.5, 14.5, 16.5]);
+        let mut a = [Four::all(0.5); 2];
+        let b = [Four::of([1.0, 2.0, 3.0, 4.0]), Four::of([5.0, 6.0, 7.0, 8.0])];
+        assert_eq!(dot(&a, &b), 18.0);
+        move_along(&mut a, 2.0, &b);
+        assert_eq!(a[1].0, [10.5, 12.5, 14.5, 16.5]);
     }
 }

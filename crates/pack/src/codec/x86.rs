@@ -28,25 +28,26 @@ pub enum Part {
     Immediate,
 }
 
-/// What follows an opcode: bit 3 says that a ModRM byte does, the rest what constant.
-mod follows {
+/// What an opcode is, or what follows it: bit 3 says that a ModRM byte does, the rest what constant.
+mod form {
     pub const NOTHING: u8 = 0;
     /// One byte.
     pub const BYTE: u8 = 1;
     /// Four bytes, two under the prefix 66.
     pub const FULL: u8 = 2;
-    /// Two bytes.
-    pub const TWO: u8 = 3;
     /// Four bytes, eight under REX.W.
-    pub const WIDE: u8 = 4;
-    /// A byte if ModRM's register field is 0 or 1 (the `test` form of group 3).
-    pub const TEST_BYTE: u8 = 5;
-    /// The same in full size.
-    pub const TEST_FULL: u8 = 6;
+    pub const WIDE: u8 = 3;
+    /// A prefix.
+    pub const PREFIX: u8 = 4;
+    /// The first byte of a VEX prefix.
+    pub const VEX: u8 = 5;
+    /// The way to another opcode map.
+    pub const ESCAPE: u8 = 6;
     pub const MODRM: u8 = 8;
 }
 
-/// The forms of the one-byte map (low nibble) and of the map behind 0F (high nibble).
+/// The forms of the one-byte map (low nibble) and of the map behind 0F (high nibble). Opcodes that
+/// no compiler emits are told as suits their neighbours.
 static FORMS: [u8; 256] = {
     let mut forms = [0; 256];
     let mut opcode = 0;
@@ -58,8 +59,11 @@ static FORMS: [u8; 256] = {
 };
 
 const fn one_byte_form(opcode: u8) -> u8 {
-    use follows::*;
+    use form::*;
     match opcode {
+        0x0f => ESCAPE,
+        0x26 | 0x2e | 0x36 | 0x3e | 0x40..=0x4f | 0x64..=0x67 | 0xf0 | 0xf2 | 0xf3 => PREFIX,
+        0xc4 | 0xc5 => VEX,
         0x00..=0x3f => match opcode & 7 {
             0..=3 => MODRM,
             4 => BYTE,
@@ -68,21 +72,19 @@ const fn one_byte_form(opcode: u8) -> u8 {
         },
         0x6a | 0x70..=0x7f | 0xa8 | 0xb0..=0xb7 | 0xcd | 0xe0..=0xe7 | 0xeb => BYTE,
         0x68 | 0xa9 | 0xe8 | 0xe9 => FULL,
-        0xc2 => TWO,
         0xb8..=0xbf => WIDE,
-        0x6b | 0x80 | 0x82 | 0x83 | 0xc0 | 0xc1 | 0xc6 => MODRM | BYTE,
-        0x69 | 0x81 | 0xc7 => MODRM | FULL,
-        0xf6 => MODRM | TEST_BYTE,
-        0xf7 => MODRM | TEST_FULL,
+        0x6b | 0x80 | 0x82 | 0x83 | 0xc0 | 0xc1 | 0xc6 | 0xf6 => MODRM | BYTE,
+        0x69 | 0x81 | 0xc7 | 0xf7 => MODRM | FULL,
         0x50..=0x62 | 0x6c..=0x6f | 0x90..=0x9f | 0xa4..=0xa7 | 0xaa..=0xaf => NOTHING,
-        0xc3 | 0xc9 | 0xcc | 0xec..=0xef | 0xf4 | 0xf5 | 0xf8..=0xfd => NOTHING,
+        0xc2 | 0xc3 | 0xc9 | 0xcc | 0xec..=0xef | 0xf4 | 0xf5 | 0xf8..=0xfd => NOTHING,
         _ => MODRM,
     }
 }
 
 const fn behind_0f_form(opcode: u8) -> u8 {
-    use follows::*;
+    use form::*;
     match opcode {
+        0x38 | 0x3a => ESCAPE,
         0x05 | 0x0b | 0x31 | 0x77 | 0xa2 | 0xc8..=0xcf => NOTHING,
         0x80..=0x8f => FULL,
         0x70..=0x73 | 0xa4 | 0xac | 0xba | 0xc2 | 0xc4..=0xc6 => MODRM | BYTE,
@@ -90,8 +92,51 @@ const fn behind_0f_form(opcode: u8) -> u8 {
     }
 }
 
+/// Places of facts in [`Walker::facts`].
+pub mod fact {
+    // The instruction so far; those that aren't known yet are 0, but for the last two.
+    /// Prefix bytes.
+    pub const PREFIX: usize = 0;
+    /// The opcode with its map in bits 8 and up.
+    pub const OPCODE: usize = 1;
+    /// ModRM, and SIB above it.
+    pub const MODRM: usize = 2;
+    /// The register field of ModRM.
+    pub const REGISTER: usize = 3;
+    /// ModRM without it.
+    pub const OPERAND: usize = 4;
+    /// The third register, which a VEX prefix names, above it 1.
+    pub const SOURCE: usize = 5;
+    /// The last displacement.
+    pub const DISPLACEMENT: usize = 6;
+    /// The last constant.
+    pub const IMMEDIATE: usize = 7;
+    /// Facts of an instruction; those of the three instructions before follow.
+    pub const RECORD: usize = 8;
+    /// The last sixteen bytes, the last one first.
+    pub const BYTES: usize = 4 * RECORD;
+    /// What the next byte is, and how much of that is to come.
+    pub const STATE: usize = BYTES + 16;
+    /// The bytes so far of the displacement or constant.
+    pub const FIELD: usize = STATE + 1;
+    /// The last displacement of four bytes that was added to a register.
+    pub const OFFSET: usize = STATE + 2;
+    /// What came with such a fact the last time, by pairs of facts.
+    pub const RECALLED: usize = STATE + 3;
+    /// Facts that others fill in.
+    pub const OTHERS: usize = RECALLED + 3;
+}
+
+/// Pairs of a fact and another that came with it in the same instruction: ModRM with the opcode,
+/// the opcode after the one before, the displacement with ModRM.
+static RECALLED: [(u8, u8); 3] = {
+    use fact::*;
+    [(OPCODE as u8, MODRM as u8), ((OPCODE + RECORD) as u8, OPCODE as u8), (MODRM as u8, DISPLACEMENT as u8)]
+};
+
 /// The state of the walk. All zero is the start of an instruction.
 #[derive(Clone)]
+#[repr(C)]
 pub struct Walker {
     /// What the next byte is.
     pub part: Part,
@@ -99,48 +144,47 @@ pub struct Walker {
     pub left: u8,
     /// Opcode map: 0 is the one-byte map, 1 behind 0F, 2 behind 0F 38, 3 behind 0F 3A.
     pub map: u8,
+    /// Length of the displacement that is still to come.
+    displacement: u8,
     /// Length of the immediate that this instruction ends with.
     pub immediate: u8,
-    /// The last prefix bytes of this instruction.
-    pub prefix: u32,
-    /// The opcode with its map in bits 8 and up; 0 before it is known.
-    pub opcode: u32,
-    /// ModRM, and SIB above it; 0 before they are known.
-    pub modrm: u32,
-    /// The bytes so far of the displacement or immediate.
-    pub field: u32,
-    /// The displacement of this instruction, once it is complete.
-    pub displacement: u32,
-    /// What came in the last instructions, newest first.
-    pub past: Past,
-}
-
-/// What the walker remembers of instructions that are complete; each newest first.
-#[derive(Clone)]
-pub struct Past {
-    /// Opcodes.
-    pub opcodes: [u32; 4],
-    /// ModRM and SIB.
-    pub modrms: [u32; 3],
-    /// Prefixes.
-    pub prefixes: [u32; 2],
-    /// The last displacement.
-    pub displacement: u32,
-    /// The last displacement of four bytes that was added to a register.
-    pub offset: u32,
-    /// The last immediate.
-    pub immediate: u32,
+    /// What is known of this instruction and the last ones, see [`fact`].
+    pub facts: [u32; 64],
+    recalled: [[u32; 1024]; 3],
 }
 
 impl Walker {
+    /// The state before the first byte.
+    pub const START: Walker = Walker {
+        part: Part::Opcode,
+        left: 0,
+        map: 0,
+        displacement: 0,
+        immediate: 0,
+        facts: [0; 64],
+        recalled: [[0; 1024]; 3],
+    };
+
+    /// What the next byte is, and what is still to come.
+    pub fn state(&self) -> u32 {
+        u32::from_le_bytes([self.part as u8, self.left, self.map, self.displacement])
+    }
+
+    /// Fills in the facts from instructions further back.
+    pub fn recall(&mut self) {
+        for (i, ((key, _), memory)) in RECALLED.iter().zip(&self.recalled).enumerate() {
+            self.facts[fact::RECALLED + i] = memory[self.facts[usize::from(*key) & 63] as usize & 1023];
+        }
+    }
+
     /// Whether the next four bytes are relative to the end of their instruction: the distance of
     /// a near call or jump, or an address relative to RIP. How far that end lies behind the four
     /// bytes is [`Walker::immediate`] in the latter case.
     pub fn at_relative(&self) -> bool {
         self.left == 4
             && match self.part {
-                Part::Displacement => self.modrm & 0xc7 == 5,
-                Part::Immediate => matches!(self.opcode, 0xe8 | 0xe9 | 0x180..=0x18f),
+                Part::Displacement => self.facts[fact::OPERAND] == 5,
+                Part::Immediate => matches!(self.facts[fact::OPCODE], 0xe8 | 0xe9 | 0x180..=0x18f),
                 _ => false,
             }
     }
@@ -148,160 +192,125 @@ impl Walker {
     /// Takes the next byte.
     pub fn step(&mut self, byte: u8) {
         let value = u32::from(byte);
+        let facts = &mut self.facts;
+        shift(facts, fact::BYTES, fact::STATE, 1);
+        facts[fact::BYTES] = value;
+        self.left = self.left.saturating_sub(1);
         match self.part {
-            Part::Opcode => self.opcode_byte(byte),
-            Part::Vex => {
-                self.prefix = self.prefix << 8 | value;
-                self.left -= 1;
-                if self.left == 1 {
-                    self.map = byte & 3; // The first of two VEX bytes names the map.
+            Part::Opcode => {
+                let mut form = FORMS[usize::from(byte)];
+                match self.map {
+                    0 => {}
+                    1 => form >>= 4,
+                    2 => form = form::MODRM,
+                    _ => form = form::MODRM | form::BYTE,
                 }
-                if self.left == 0 {
-                    self.part = Part::Opcode;
+                let prefix = facts[fact::PREFIX];
+                facts[fact::OPCODE] = value | u32::from(self.map) << 8;
+                self.immediate = match form & 7 {
+                    form::PREFIX => {
+                        facts[fact::PREFIX] = prefix << 8 | value;
+                        return;
+                    }
+                    form::VEX => {
+                        self.map = 1;
+                        self.part = Part::Vex;
+                        self.left = 0xc6 - byte;
+                        return;
+                    }
+                    form::ESCAPE => {
+                        self.map += 1 + (self.map & byte >> 1);
+                        return;
+                    }
+                    form::WIDE if prefix & 0xf8 == 0x48 => 8,
+                    form::FULL | form::WIDE if prefix & 0xff == 0x66 => 2,
+                    form::FULL | form::WIDE => 4,
+                    length => length,
+                };
+                if form & form::MODRM != 0 {
+                    self.part = Part::ModRm;
+                    return;
                 }
             }
-            Part::ModRm => {
-                self.modrm = value;
-                // Only two of the eight instructions of group 3 end with a constant.
-                if self.immediate & TEST != 0 {
-                    self.immediate = if value & 0x30 == 0 { self.immediate & 7 } else { 0 };
+            Part::Vex => {
+                facts[fact::PREFIX] = facts[fact::PREFIX] << 8 | value;
+                facts[fact::SOURCE] = value >> 3 & 15 | 16;
+                if self.left != 0 {
+                    self.map = byte & 3; // The first of two VEX bytes names the map.
+                } else {
+                    self.part = Part::Opcode;
                 }
-                let (mode, base) = (byte >> 6, byte & 7);
-                self.left = match mode {
-                    1 => 1,
-                    2 => 4,
-                    0 if base == 5 => 4,
+                return;
+            }
+            Part::ModRm => {
+                facts[fact::MODRM] = value;
+                facts[fact::REGISTER] = value & 0x38;
+                facts[fact::OPERAND] = value & 0xc7;
+                // Only two of the eight instructions of group 3 end with a constant.
+                if facts[fact::OPCODE] & !1 == 0xf6 && byte & 0x30 != 0 {
+                    self.immediate = 0;
+                }
+                self.displacement = match byte & 0xc7 {
+                    5 | 0x80..=0xbf => 4,
+                    0x40..=0x7f => 1,
                     _ => 0,
                 };
-                if mode != 3 && base == 4 {
+                if byte < 0xc0 && byte & 7 == 4 {
                     self.part = Part::Sib;
-                } else {
-                    self.operands();
+                    return;
                 }
             }
             Part::Sib => {
-                if self.modrm & 0xc0 == 0 && byte & 7 == 5 {
-                    self.left = 4;
+                if facts[fact::OPERAND] == 4 && byte & 7 == 5 {
+                    self.displacement = 4;
                 }
-                self.modrm |= value << 8;
-                self.operands();
+                facts[fact::MODRM] |= value << 8;
             }
             Part::Displacement | Part::Immediate => {
-                self.field = self.field << 8 | value;
-                self.left -= 1;
-                if self.left == 0 {
-                    if self.part == Part::Displacement {
-                        self.displacement = self.field;
-                        self.past.displacement = self.field;
-                        if self.modrm & 0xc0 == 0x80 {
-                            self.past.offset = self.field;
-                        }
-                        self.constant()
-                    } else {
-                        self.past.immediate = self.field;
-                        self.finish()
+                facts[fact::FIELD] = facts[fact::FIELD] << 8 | value;
+                if self.left != 0 {
+                    return;
+                }
+                let field = facts[fact::FIELD];
+                if self.part == Part::Displacement {
+                    facts[fact::DISPLACEMENT] = field;
+                    if facts[fact::OPERAND] >= 0x80 {
+                        facts[fact::OFFSET] = field;
                     }
+                } else {
+                    facts[fact::IMMEDIATE] = field;
                 }
             }
         }
-    }
-
-    fn opcode_byte(&mut self, byte: u8) {
-        match (self.map, byte) {
-            (0, 0x40..=0x4f | 0x66 | 0xf2 | 0xf3 | 0xf0 | 0x64 | 0x65 | 0x2e) => {
-                self.prefix = self.prefix << 8 | u32::from(byte);
-                return;
+        // All up to the displacement is known, or up to the constant, or all.
+        facts[fact::FIELD] = 0;
+        if self.displacement != 0 {
+            self.part = Part::Displacement;
+            self.left = self.displacement;
+            self.displacement = 0;
+        } else if self.immediate != 0 {
+            self.part = Part::Immediate;
+            self.left = self.immediate;
+            self.immediate = 0;
+        } else {
+            for ((key, value), memory) in RECALLED.iter().zip(&mut self.recalled) {
+                memory[facts[usize::from(*key) & 63] as usize & 1023] = facts[usize::from(*value) & 63];
             }
-            (0, 0x0f) => {
-                self.map = 1;
-                return;
-            }
-            (0, 0xc4 | 0xc5) => {
-                self.map = 1;
-                self.part = Part::Vex;
-                self.left = 0xc6 - byte;
-                return;
-            }
-            (1, 0x38 | 0x3a) => {
-                self.map = (byte & 2) / 2 + 2;
-                return;
-            }
-            _ => {}
+            shift(facts, 0, fact::BYTES, fact::RECORD);
+            facts[..fact::DISPLACEMENT].fill(0);
+            self.part = Part::Opcode;
+            self.map = 0;
         }
-        self.opcode = u32::from(byte) | u32::from(self.map) << 8;
-        let forms = FORMS[usize::from(byte)];
-        let form = match self.map {
-            0 => forms & 15,
-            1 => forms >> 4,
-            2 => follows::MODRM,
-            _ => follows::MODRM | follows::BYTE,
-        };
-        let last = self.prefix & 0xff;
-        let full = if last == 0x66 || self.prefix & 0xff00 == 0x6600 { 2 } else { 4 };
-        self.immediate = match form & 7 {
-            follows::BYTE => 1,
-            follows::FULL => full,
-            follows::TWO => 2,
-            follows::WIDE if last & 0xf8 == 0x48 => 8,
-            follows::WIDE => full,
-            follows::TEST_BYTE => TEST | 1,
-            follows::TEST_FULL => TEST | full,
-            _ => 0,
-        };
-        if form & follows::MODRM != 0 { self.part = Part::ModRm } else { self.constant() }
     }
-
-    /// ModRM and SIB are known: the displacement comes, if there is one.
-    fn operands(&mut self) {
-        self.field = 0;
-        if self.left > 0 { self.part = Part::Displacement } else { self.constant() }
-    }
-
-    /// All but the constant is known.
-    #[inline(never)]
-    fn constant(&mut self) {
-        self.field = 0;
-        self.left = self.immediate;
-        if self.left > 0 { self.part = Part::Immediate } else { self.finish() }
-    }
-
-    /// The instruction is complete.
-    #[inline(never)]
-    pub fn finish(&mut self) {
-        let Past { opcodes: [a, b, c, _], modrms: [d, e, _], prefixes: [f, _], .. } = self.past;
-        let past = Past {
-            opcodes: [self.opcode, a, b, c],
-            modrms: [self.modrm, d, e],
-            prefixes: [self.prefix, f],
-            ..self.past
-        };
-        *self = Walker { past, ..Walker::START };
-    }
-
-    /// The state before the first byte.
-    pub const START: Walker = Walker {
-        part: Part::Opcode,
-        left: 0,
-        map: 0,
-        immediate: 0,
-        prefix: 0,
-        opcode: 0,
-        modrm: 0,
-        field: 0,
-        displacement: 0,
-        past: Past {
-            opcodes: [0; 4],
-            modrms: [0; 3],
-            prefixes: [0; 2],
-            displacement: 0,
-            offset: 0,
-            immediate: 0,
-        },
-    };
 }
 
-/// Marks [`Walker::immediate`] as hanging on the ModRM byte.
-const TEST: u8 = 0x80;
+/// Moves the facts from `start` on by so many places, up to `end`.
+#[inline(never)]
+fn shift(facts: &mut [u32; 64], start: usize, end: usize, by: usize) {
+    for place in (start + by..end).rev() {
+        facts[place & 63] = facts[(place - by) & 63];
+    }
+}
 
 /// Mixes two words into one, every bit of which depends on every bit of both.
 #[inline(never)]
@@ -328,7 +337,7 @@ mod tests {
     }
 
     fn at_start(walker: &Walker) -> bool {
-        walker.part == Part::Opcode && walker.prefix == 0 && walker.map == 0
+        walker.part == Part::Opcode && walker.facts[fact::PREFIX] == 0 && walker.map == 0
     }
 
     #[test]
@@ -358,7 +367,6 @@ mod tests {
             &[0xc4, 0xe2, 0x7d, 0x18, 0x05, 1, 2, 3, 4], // vbroadcastss [rip + d]
             &[0xc4, 0xe3, 0x7d, 0x08, 0xc0, 0x09],       // vroundps
             &[0x81, 0x3d, 1, 2, 3, 4, 5, 6, 7, 8],       // cmp dword [rip + d], imm32
-            &[0xc2, 8, 0],                               // ret 8
             &[0xc3],
         ]);
     }

@@ -1,11 +1,15 @@
 //! What `cargo pack` prints: where the bytes of the file go.
 
+pub mod compare;
 pub mod costs;
+pub mod history;
 pub mod page;
 pub mod symbols;
 
-use crate::Packed;
+use crate::{Error, Packed};
+use costs::Costs;
 use std::fmt;
+use std::path::Path;
 
 /// What the packed file may have, bytes.
 pub const LIMIT: usize = 65_536;
@@ -44,6 +48,21 @@ impl fmt::Display for Report {
         writeln!(f, "total          {:>8}", grouped(self.total as i64))?;
         writeln!(f, "left of {} {:>8}", grouped(LIMIT as i64), grouped(left))
     }
+}
+
+/// What each byte of a program packed by context mixing costs, which `linked` has the symbols of. Writes
+/// `report.html`, which also tells what changed since the last one, and `report.tsv`, from which the
+/// next one will know, into `directory`.
+pub fn write(directory: &Path, linked: &[u8], packed: &Packed) -> Result<Costs, Error> {
+    let symbols = symbols::symbols(linked, packed.stripped.len())?;
+    let costs = Costs::new(&symbols, &packed.bits);
+    let (list, html) = (directory.join("report.tsv"), directory.join("report.html"));
+    let last = std::fs::read_to_string(&list).unwrap_or_default();
+    let text = page::page(&Report::new(linked.len(), packed), &costs, &symbols, &packed.bits, &last);
+    std::fs::create_dir_all(directory).map_err(Error::file(directory))?;
+    std::fs::write(&html, text).map_err(Error::file(&html))?;
+    std::fs::write(&list, page::list(&costs)).map_err(Error::file(&list))?;
+    Ok(costs)
 }
 
 /// A number with commas between its thousands.

@@ -127,6 +127,21 @@ fn functions(file: &[u8], sections: &[Section]) -> Result<Vec<Symbol>, Error> {
     Ok(found)
 }
 
+/// Every name in the table of symbols, also of what other files define, without versions.
+pub fn names(file: &[u8]) -> Result<Vec<String>, Error> {
+    let sections = sections(file)?;
+    let Some(table) = sections.iter().find(|section| section.kind == SHT_SYMTAB) else {
+        return Ok(Vec::new());
+    };
+    let strings = sections.get(table.link).map_or(file.len(), |strings| strings.offset);
+    let entries = file[table.offset..table.offset + table.length].chunks_exact(24);
+    let name = |entry: &[u8]| {
+        let name = text_at(file, strings.saturating_add(u32_at(entry, 0)? as usize));
+        Ok(name.split('@').next().unwrap_or_default().to_owned())
+    };
+    entries.map(name).collect()
+}
+
 fn text_at(file: &[u8], at: usize) -> String {
     let bytes = file.get(at..).unwrap_or(&[]).split(|&byte| byte == 0).next().unwrap_or(&[]);
     String::from_utf8_lossy(bytes).into_owned()

@@ -31,6 +31,10 @@ fn reflectance_and_cosine_are_within_an_ulp() {
         let (a, b, c) = (f64::from(n_i), f64::from(n_t), f64::from(cos));
         // Sums of exact products, by their parts.
         let g2 = (b - a) * (b + a) + (a * c) * (a * c);
+        // Where f64 cancels, tests/kernels.rs has an exact oracle.
+        if g2.abs() < 1e-7 * (a * c) * (a * c) {
+            continue;
+        }
         assert_eq!(one(is_total(splat(cos), splat(n_i), splat(n_t))).to_bits() != 0, g2 < 0.0);
         let got = one(reflectance(splat(cos), splat(n_i), splat(n_t)));
         assert!((0.0..=1.0).contains(&got), "{got} at {cos:e} {n_i} {n_t}");

@@ -1,0 +1,127 @@
+//! Numbers that a formula can be written in once: f32, f64, and packets of either.
+
+use core::ops::{Add, Div, Mul, Neg, Sub};
+use luc_core::math::lanes::{self, F};
+use luc_core::math::lanes_f64::{D, splat_d};
+use luc_core::math::lanes_fn;
+
+/// What the naive formulas need.
+pub trait Real:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
+{
+    /// A number in all lanes.
+    fn of(v: f64) -> Self;
+    fn sqrt(self) -> Self;
+    fn exp(self) -> Self;
+    fn floor(self) -> Self;
+    /// The lesser of two; the other one where `self` is NaN.
+    fn min(self, b: Self) -> Self;
+    fn max(self, b: Self) -> Self;
+    /// `a` where this is 0 or more, `b` where it is less or NaN.
+    fn pick(self, a: Self, b: Self) -> Self;
+    fn abs(self) -> Self {
+        self.max(-self)
+    }
+}
+
+macro_rules! scalar {
+    ($type:ty) => {
+        #[allow(clippy::disallowed_methods, reason = "the naive forms are those of the platform")]
+        impl Real for $type {
+            fn of(v: f64) -> Self {
+                v as $type
+            }
+            fn sqrt(self) -> Self {
+                self.sqrt()
+            }
+            fn exp(self) -> Self {
+                self.exp()
+            }
+            fn floor(self) -> Self {
+                self.floor()
+            }
+            fn min(self, b: Self) -> Self {
+                self.min(b)
+            }
+            fn max(self, b: Self) -> Self {
+                self.max(b)
+            }
+            fn pick(self, a: Self, b: Self) -> Self {
+                if self >= 0.0 { a } else { b }
+            }
+        }
+    };
+}
+scalar!(f32);
+scalar!(f64);
+
+impl Real for F {
+    fn of(v: f64) -> Self {
+        lanes::splat(v as f32)
+    }
+    fn sqrt(self) -> Self {
+        F::sqrt(self)
+    }
+    fn exp(self) -> Self {
+        lanes_fn::exp(self)
+    }
+    fn floor(self) -> Self {
+        F::floor(self)
+    }
+    fn min(self, b: Self) -> Self {
+        lanes::min(self, b)
+    }
+    fn max(self, b: Self) -> Self {
+        lanes::max(self, b)
+    }
+    fn pick(self, a: Self, b: Self) -> Self {
+        self.simd_ge(F::ZERO).select(a, b)
+    }
+}
+
+impl Real for D {
+    fn of(v: f64) -> Self {
+        splat_d(v)
+    }
+    fn sqrt(self) -> Self {
+        D::sqrt(self)
+    }
+    fn exp(self) -> Self {
+        D::exp(self)
+    }
+    fn floor(self) -> Self {
+        D::floor(self)
+    }
+    fn min(self, b: Self) -> Self {
+        self.fast_min(b)
+    }
+    fn max(self, b: Self) -> Self {
+        self.fast_max(b)
+    }
+    fn pick(self, a: Self, b: Self) -> Self {
+        self.simd_ge(D::splat(0.0)).select(a, b)
+    }
+}
+
+/// A vector.
+pub type V<R> = [R; 3];
+
+/// Three of the arguments, from `at` on.
+pub fn vector<R: Real>(x: &Arguments<R>, at: usize) -> V<R> {
+    [x[at], x[at + 1], x[at + 2]]
+}
+
+/// Arguments of a formula, some unused.
+pub type Arguments<R> = [R; 16];
+
+pub fn dot<R: Real>(a: V<R>, b: V<R>) -> R {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+pub fn sub<R: Real>(a: V<R>, b: V<R>) -> V<R> {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+pub fn cross<R: Real>(a: V<R>, b: V<R>) -> V<R> {
+    [a[1] * b[2] - b[1] * a[2], a[2] * b[0] - b[2] * a[0], a[0] * b[1] - b[0] * a[1]]
+}

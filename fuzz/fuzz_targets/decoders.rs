@@ -1,0 +1,32 @@
+//! What the launcher decodes, damaged in any way: each decoder ends, and what was encoded comes back.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use luc_pack::codec::{cm, filter, lzma, small};
+use luc_pack::encode;
+
+fuzz_target!(|data: &[u8]| {
+    let [kind, size, rest @ ..] = data else { return };
+    let mut output = vec![0; usize::from(*size) * 4];
+    match kind % 5 {
+        0 => lzma::decode(rest, &mut output),
+        1 => small::decode(&mut encode::new_cells(), rest, &mut output),
+        2 => {
+            output.truncate(64);
+            cm::decode(&mut encode::new_model(), rest, &mut output);
+        }
+        3 => {
+            let coded = encode::lzma(rest);
+            let mut back = vec![0; rest.len()];
+            lzma::decode(&coded, &mut back);
+            assert_eq!(back, rest);
+        }
+        _ => {
+            let mut code = rest.to_vec();
+            let address = 0x0040_0000 + u32::from(*size);
+            filter::filter(&mut code, address, filter::Direction::Pack);
+            filter::filter(&mut code, address, filter::Direction::Unpack);
+            assert_eq!(code, rest);
+        }
+    }
+});
