@@ -81,7 +81,7 @@ pub fn in_every_build(part: &str) -> bool {
 }
 
 /// Part and local frame of those whose value is kept for all builds, in `values.txt`.
-pub const VALUES: [(&str, u64); 16] = [
+pub const VALUES: [(&str, u64); 17] = [
     ("blobs", 200),
     ("blobs", 600),
     ("blobs", 1000),
@@ -98,6 +98,7 @@ pub const VALUES: [(&str, u64); 16] = [
     ("facets", 720),
     ("facets", 1260),
     ("end", 240),
+    ("smoke", 180),
 ];
 
 /// Size of those.
