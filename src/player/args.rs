@@ -279,8 +279,7 @@ const VIEW_HELP: &[u8] = if cfg!(luc_size) {
 
 /// What `--help` says of sound, where there is any.
 const SOUND_HELP: &[u8] = if cfg!(feature = "sound") {
-    b"\
-  --mute           play without sound
+    b"  --mute           play without sound
   --wav FILE       write the sound, of --scene or all, and open no window;
                    .wav, or - for standard output
 "
@@ -312,14 +311,12 @@ Lúč, a ray-traced intro. Esc or closing the window ends it.
         b"
 ",
         VIEW_HELP,
-        b"\
-  --from N         start playing at frame N, 60 a second
+        b"  --from N         start playing at frame N, 60 a second
   --once           end instead of looping
   --fullscreen     cover the screen
 ",
         SOUND_HELP,
-        b"\
-  --threads N      render on N threads, 1 to 256 (all cores)
+        b"  --threads N      render on N threads, 1 to 256 (all cores)
   --help           this text
   --version        name and version
 ",
@@ -372,6 +369,11 @@ mod tests {
         assert!(text.contains(&["a frame: ", default].concat()), "{text}");
         assert!(text.len() < 1600, "{} bytes", text.len());
         assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
+        let flags = text.lines().filter(|line| line.trim_start().starts_with('-'));
+        assert!(
+            flags.into_iter().all(|line| line.starts_with("  -")),
+            "flags stand below each other: {text}"
+        );
     }
 
     #[test]

@@ -141,7 +141,7 @@ fn strip(file: &[u8], segments: &[Segment]) -> Result<Vec<u8>, Error> {
     let kept: Vec<usize> = (0..segments.len()).filter(|&i| !is_note(&segments[i])).collect();
     let end = kept.iter().map(|&i| (segments[i].offset + segments[i].length) as usize);
     let end = end.max().unwrap_or(0).max(table + segments.len() * 56);
-    let mut stripped = file[..end].to_vec();
+    let mut stripped = file.get(..end).ok_or(Error::Malformed)?.to_vec();
     stripped[table..table + segments.len() * 56].fill(0);
     for (to, &from) in kept.iter().enumerate() {
         let from = table + from * 56;
@@ -252,5 +252,18 @@ mod tests {
         file.push(0xc3);
         let program = Program::new(&file).unwrap();
         assert_eq!(program.code, Code { range: 0..113, base: LOADED_AT as u64 });
+    }
+
+    /// As fuzzing found: the last entry of the table of segments cut off by the end of the file.
+    #[test]
+    fn a_table_cut_short_is_an_error() {
+        let file = std::fs::read(std::env::current_exe().unwrap()).unwrap();
+        let table = u64_at(&file, 32).unwrap() as usize;
+        let end = table + usize::from(u16_at(&file, 56).unwrap()) * 56;
+        for length in end - 56..end {
+            assert!(Program::new(&file[..length]).is_err(), "{length} of {end}");
+        }
+        let segments = segments(&file).unwrap();
+        assert!(strip(&file[..end - 2], &segments).is_err());
     }
 }

@@ -158,9 +158,12 @@ pub fn wrap(x: F) -> F {
 #[inline(always)]
 pub fn sin_turns(x: F) -> F {
     let r = wrap(x);
-    let y = r.abs();
+    let y = r & splat(f32::from_bits(0x7fff_ffff));
     let y = min(y, splat(0.5) - y);
-    let value = y * poly(y * y, [6.283_179_3, -41.338_943, 81.395_355, -71.474_678]);
+    let z = y * y;
+    // Written out: compiled for size, `poly` is a loop, and this is the sound's innermost.
+    let high = splat(81.395_355) + z * splat(-71.474_678);
+    let value = y * (splat(6.283_179_3) + z * (splat(-41.338_943) + z * high));
     value | (r & splat(-0.0))
 }
 

@@ -181,7 +181,6 @@ impl Packet {
         c[ATTACK] = ONE / max(c[ATTACK] * RATE_F, ONE);
         c[RESONANCE] = ONE / c[RESONANCE];
         c[SWEEP_RISE] *= RATE_F;
-        c[PASS] = ONE - c[PASS];
         let taken = RAMP.simd_lt(splat(self.used as f32));
         c[LEFT] &= taken;
         c[RIGHT] &= taken;
@@ -256,9 +255,10 @@ impl Packet {
             let v2 = i2 + self.filter[1] * i1 + self.filter[2] * v3;
             // Between the edges of a pulse the first one falls to 0.
             self.integrators = [v1 + v1 - i1 + LEAST, v2 + v2 - i2];
-            // By now 1 is low, which is v2, 0 a band, which is v1, and -1 high, the rest.
-            let high = max(-c[PASS], ZERO);
-            let passed = c[PASS] * v2 + (ONE - c[PASS].abs()) * v1 + high * (v0 - c[RESONANCE] * v1);
+            // Low, 0, is v2, a band, 1, is v1, and high, 2, the rest.
+            let high = max(c[PASS] - ONE, ZERO);
+            let band = c[PASS] - high - high;
+            let passed = (ONE - c[PASS]) * v2 + band * v1 + high * (v0 - c[RESONANCE] * v1);
 
             let over = splat(self.age as f32).simd_ge(c[LENGTH]);
             self.rising = self.rising & self.envelope.simd_lt(ONE) & !over;
