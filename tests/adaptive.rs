@@ -8,8 +8,10 @@ use luc::show;
 use luc_core::counters::{Counter, Counters};
 use luc_core::quality::Quality;
 use luc_core::render::{Renderer, Stage};
-use luc_core::sample::{Kind, Scratch, TILE, Tile, refine};
+use luc_core::sample::{Kind, Scratch, TILE, Tile, refine, smoke};
 use luc_core::scene::Scene;
+use luc_core::sim::{Simulation, Volume};
+use std::cell::RefCell;
 use support::crossing::{self, Backdrop, Thing};
 use support::golden;
 use support::picture::{channels, distance, psnr};
@@ -17,11 +19,19 @@ use support::picture::{channels, distance, psnr};
 /// Size of the pictures that are compared.
 const SIZE: (u32, u32) = (640, 360);
 
+thread_local! {
+    /// One for all frames of a test, so that smoke comes from frame to frame, not from its start to each.
+    static RENDERER: RefCell<Renderer> = RefCell::default();
+    /// The same for what is sampled without one.
+    static SMOKE: RefCell<Simulation> = RefCell::default();
+}
+
 fn render(scene: &Scene, n: u64, size: (u32, u32), quality: &Quality) -> (Vec<u32>, Counters) {
-    let mut renderer = Renderer::default();
-    let mut pixels = vec![0; (size.0 * size.1) as usize];
-    renderer.frame(scene, n, size, quality, &mut pixels);
-    (pixels, renderer.counters)
+    RENDERER.with_borrow_mut(|renderer| {
+        let mut pixels = vec![0; (size.0 * size.1) as usize];
+        renderer.frame(scene, n, size, quality, &mut pixels);
+        (pixels, renderer.counters)
+    })
 }
 
 fn preset(name: &str) -> Quality {
@@ -193,13 +203,23 @@ fn the_shadow_of_a_ball_of_three_pixels_is_never_lost() {
 
 /// How each pixel of a scene was got, and whether all light is finite, straight from the sampler.
 fn records(scene: &Scene, size: (u32, u32), quality: &Quality) -> (Vec<Kind>, bool) {
-    let stage = Stage::new(scene, quality, size.0, size.1);
+    let mut stage = Stage::new(scene, quality, size.0, size.1);
+    let mut volume = Volume::default();
+    if let Some(of) = &scene.smoke {
+        SMOKE.with_borrow_mut(|simulation| {
+            let (mut counters, eye) = (Counters::default(), scene.camera.position);
+            simulation.run(of, &mut counters);
+            volume.light(of, simulation, &stage.lamps, eye, &mut counters);
+        });
+        stage.volume = Some(&volume);
+    }
     let (width, height) = (size.0 as usize, size.1 as usize);
     let mut kinds = vec![Kind::Traced; width * height];
     let (mut scratch, mut tile, mut finite) = (Scratch::default(), Tile::default(), true);
     for top in (0..height).step_by(TILE) {
         for left in (0..width).step_by(TILE) {
             refine(&stage, &mut scratch, (left, top), &mut tile);
+            smoke(&stage, &mut scratch, (left, top), &mut tile);
             for y in top..height.min(top + TILE) {
                 for x in left..width.min(left + TILE) {
                     kinds[y * width + x] = tile.record[(y - top) * TILE + x - left].kind();
@@ -240,7 +260,9 @@ fn the_overlay_shows_how_each_pixel_was_got() {
             let (before, counters) = render(&scene, frame, SIZE, &quality);
             scene.overlay = 1.0;
             let (after, same) = render(&scene, frame, SIZE, &quality);
-            for (counter, words) in Counter::ALL.into_iter().filter(|c| c.0 != Counter::OverlayPixels) {
+            // Steps of smoke are taken once.
+            let own = [Counter::OverlayPixels, Counter::SmokeCells];
+            for (counter, words) in Counter::ALL.into_iter().filter(|c| !own.contains(&c.0)) {
                 assert_eq!(counters.get(counter), same.get(counter), "the overlay costs no {words}");
             }
             let (kinds, _) = records(&scene, SIZE, &quality);

@@ -10,9 +10,9 @@ use luc_core::scene::{Material, Scene, Sphere};
 
 const SIZE: (u32, u32) = (320, 180);
 
-/// Renders a scene and compares every counter with the plan.
-fn check(name: &str, scene: &Scene, quality: &Quality) {
-    let mut renderer = Renderer::default();
+/// Renders a scene and compares every counter with the plan. `steps` is how far the renderer's smoke has
+/// come before.
+fn check(renderer: &mut Renderer, steps: u32, name: &str, scene: &Scene, quality: &Quality) {
     let mut pixels = vec![0; (SIZE.0 * SIZE.1) as usize];
     renderer.frame(scene, 0, SIZE, quality, &mut pixels);
     let plan = Plan::of(scene, quality);
@@ -22,8 +22,14 @@ fn check(name: &str, scene: &Scene, quality: &Quality) {
             continue;
         }
         let count = renderer.counters.get(counter);
-        // So does whether any cell needs the exact surface, where that is an option.
-        if counter == Counter::KnownSurfaces && plan.names(counter) {
+        // So does whether any cell needs the exact surface, where that is an option, and whether there
+        // is smoke yet.
+        if [Counter::KnownSurfaces, Counter::SmokeMarched].contains(&counter) && plan.names(counter) {
+            continue;
+        }
+        // Steps that the renderer remembers aren't taken again.
+        if counter == Counter::SmokeCells && scene.smoke.is_some_and(|smoke| smoke.steps == steps) {
+            assert_eq!(count, 0, "{name}: {words}");
             continue;
         }
         assert_eq!(
@@ -37,6 +43,8 @@ fn check(name: &str, scene: &Scene, quality: &Quality) {
 #[test]
 fn every_part_does_what_its_plan_names_and_nothing_else() {
     let mut start = 0;
+    // One for all, so that smoke comes from frame to frame, not from the start to each.
+    let (mut renderer, mut steps) = (Renderer::default(), 0);
     for part in show::PARTS {
         for local in (0..part.frames).step_by(173).chain([part.frames - 1]) {
             let scene = (part.scene)(local);
@@ -44,10 +52,13 @@ fn every_part_does_what_its_plan_names_and_nothing_else() {
                 // The slow end of the ladder only now and then.
                 if quality.samples == 0 || local == 0 {
                     check(
+                        &mut renderer,
+                        steps,
                         &format!("{} {local} (frame {}) {name}", part.name, start + local),
                         &scene,
                         &quality,
                     );
+                    steps = scene.smoke.map_or(steps, |smoke| smoke.steps);
                 }
             }
         }
@@ -79,16 +90,22 @@ fn what_a_preset_cannot_show_is_a_named_warning() {
     assert_eq!(warnings(&mirror, &shallow), ["glass needs a depth of two or more"]);
 }
 
-/// The features that the manifest gives the size build, from its line for luc-core.
+/// The features that the manifest gives this build, from the lines for luc-core and for parts that the
+/// size build leaves out.
 fn named_in_the_manifest() -> Vec<String> {
     let manifest = include_str!("../Cargo.toml");
-    let line = manifest
-        .lines()
-        .find(|line| line.starts_with("luc-core = { workspace"))
-        .expect("a line for luc-core");
-    let (_, list) = line.split_once("features = [").expect("its features");
-    let names = list.trim_end_matches("] }").split(", ").filter(|name| !name.is_empty());
-    names.map(|name| name.trim_matches('"').to_owned()).collect()
+    let list = |start: &str, before: &str| -> Vec<String> {
+        let line = manifest.lines().find(|line| line.starts_with(start)).expect(start);
+        let (_, list) = line.split_once(before).expect("its features");
+        let names = list.split(']').next().unwrap_or_default().split(", ").filter(|name| !name.is_empty());
+        names.map(|name| name.trim_matches('"').trim_start_matches("luc-core/").to_owned()).collect()
+    };
+    let mut names = list("luc-core = { workspace", "features = [");
+    if cfg!(feature = "smoke") {
+        names.extend(list("smoke = [", "["));
+    }
+    names.sort();
+    names
 }
 
 #[test]
@@ -105,9 +122,11 @@ fn the_size_build_has_what_the_show_calls_for_and_nothing_else() {
         }
     }
     let called = features::ALL.iter().zip(called).filter_map(|((name, _), called)| called.then_some(*name));
+    let mut called: Vec<_> = called.collect();
+    called.sort();
     assert_eq!(
         named_in_the_manifest(),
-        called.collect::<Vec<_>>(),
+        called,
         "features of luc-core in the dependencies of Cargo.toml (left) and what the plans call for (right)"
     );
 }

@@ -6,6 +6,7 @@ use luc::show;
 use luc_core::output::{decimal, png, ppm};
 use luc_core::quality::Quality;
 use luc_core::render::{Renderer, View};
+use std::mem::ManuallyDrop;
 
 /// The name of a picture whose name is not given.
 pub fn name(options: &Options) -> Text {
@@ -35,7 +36,8 @@ pub fn bytes(options: &Options) -> Result<Vec<u8>, Text> {
         Some(view) if cfg!(not(luc_size)) => {
             View::ALL[view].1.draw(&show::scene(n), show::at(n).1, options.size, quality, &mut pixels);
         }
-        _ => show::frame(&mut Renderer::default(), n, options.size, quality, &mut pixels),
+        // The program ends with it: nothing is freed.
+        _ => show::frame(&mut ManuallyDrop::new(Renderer::default()), n, options.size, quality, &mut pixels),
     }
 
     let is_png = options.output.is_none_or(|name| name.as_encoded_bytes().ends_with(b".png"));

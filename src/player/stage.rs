@@ -13,7 +13,7 @@ use super::pace::Pace;
 use luc::show;
 use luc_core::quality::Quality;
 use luc_core::render::Renderer;
-use std::mem::swap;
+use std::mem::{ManuallyDrop, swap};
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU32, AtomicUsize, Ordering::Relaxed};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -116,7 +116,8 @@ impl Stage {
 
     /// Draws until the show is over; the job.
     pub fn perform(&self) {
-        let mut renderer = Renderer::default();
+        // The program ends soon after it: nothing is freed.
+        let mut renderer = ManuallyDrop::new(Renderer::default());
         let mut picture = Picture::default();
         for part in self.parts.clone() {
             self.draw(&mut renderer, show::start(part), DRAFT, &mut picture);

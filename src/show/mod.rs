@@ -11,6 +11,8 @@ mod luc;
 mod mirror;
 mod paint;
 pub mod score;
+#[cfg(feature = "smoke")]
+mod smoke;
 mod still;
 mod text;
 
@@ -59,6 +61,9 @@ pub const PARTS: &[Part] = &[
     part("facets", &score::FACETS, facets::scene),
     part("blobs", &score::BLOBS, blobs::scene),
     part("end", &score::END, end::scene),
+    // Last, so that all frames before it are the same without it.
+    #[cfg(feature = "smoke")]
+    part("smoke", &score::SMOKE, smoke::scene),
 ];
 
 /// Length of the whole show in frames; frame n is frame n mod this.

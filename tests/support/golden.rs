@@ -10,7 +10,7 @@ use std::path::PathBuf;
 pub const SIZE: (u32, u32) = (320, 180);
 
 /// Part and local frame of the kept pictures.
-pub const FRAMES: [(&str, u64); 25] = [
+pub const FRAMES: [(&str, u64); 27] = [
     ("blobs", 0),     // the drop: the lattice closed
     ("blobs", 400),   // satellites fly
     ("blobs", 1199),  // last frame
@@ -36,13 +36,15 @@ pub const FRAMES: [(&str, u64); 25] = [
     ("end", 0),       // first frame: no words yet
     ("end", 320),     // all words
     ("end", 479),     // last frame, which Lúč's first follows
+    ("smoke", 0),     // the house before the fire
+    ("smoke", 421),   // between two steps: the first smoke
 ];
 
 /// Part, local frame, preset, size.
 pub type Frame = (&'static str, u64, &'static str, (u32, u32));
 
 /// Frames whose fingerprints are kept.
-pub const FINGERPRINTS: [Frame; 24] = [
+pub const FINGERPRINTS: [Frame; 28] = [
     ("blobs", 12, "draft", (333, 187)),
     ("blobs", 700, "medium", (320, 180)),
     ("blobs", 950, "ultra", (320, 180)),
@@ -67,10 +69,19 @@ pub const FINGERPRINTS: [Frame; 24] = [
     ("facets", 480, "medium", (320, 180)),
     ("facets", 900, "ultra", (320, 180)),
     ("facets", 1200, "reference", (96, 54)),
+    ("smoke", 300, "ultra", (320, 180)),
+    ("smoke", 420, "reference", (96, 54)),
+    ("smoke", 700, "medium", (320, 180)),
+    ("smoke", 1439, "draft", (333, 187)),
 ];
 
+/// Whether a part is in the 64 kB file too.
+pub fn in_every_build(part: &str) -> bool {
+    part != "smoke"
+}
+
 /// Part and local frame of those whose value is kept for all builds, in `values.txt`.
-pub const VALUES: [(&str, u64); 16] = [
+pub const VALUES: [(&str, u64); 17] = [
     ("blobs", 200),
     ("blobs", 600),
     ("blobs", 1000),
@@ -87,6 +98,7 @@ pub const VALUES: [(&str, u64); 16] = [
     ("facets", 720),
     ("facets", 1260),
     ("end", 240),
+    ("smoke", 180),
 ];
 
 /// Size of those.

@@ -12,6 +12,10 @@ pub const GGX: bool = cfg!(feature = "ggx");
 pub const BUMPS: bool = cfg!(feature = "bumps");
 /// Signed distance fields.
 pub const FIELDS: bool = cfg!(feature = "fields");
+/// Grids of voxels.
+pub const VOXELS: bool = cfg!(feature = "voxels");
+/// Smoke, simulated.
+pub const SMOKE: bool = cfg!(feature = "smoke");
 /// Ambient occlusion by fields.
 pub const FIELD_OCCLUSION: bool = cfg!(feature = "field-occlusion");
 /// Beams of light.
@@ -39,11 +43,13 @@ pub const BRICK: bool = cfg!(feature = "brick");
 pub const SCRATCHES: bool = cfg!(feature = "scratches");
 
 /// Each feature with the counter that shows it at work.
-pub const ALL: [(&str, Counter); 15] = [
+pub const ALL: [(&str, Counter); 17] = [
     ("ggx", Counter::Ggx),
     ("bumps", Counter::Bumps),
     ("fields", Counter::FieldSteps),
     ("field-occlusion", Counter::FieldOcclusion),
+    ("voxels", Counter::VoxelSteps),
+    ("smoke", Counter::SmokeLight),
     ("beams", Counter::Beams),
     ("endless", Counter::EndlessTests),
     ("bounces", Counter::ScatterRays),

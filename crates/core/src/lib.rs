@@ -5,8 +5,8 @@
 //! **A frame** is what [`render::Renderer::frame`] makes of the two: the same bytes on any number of
 //! threads, in debug and release.
 //!
-//! How a frame flows, in the order of the modules: [`scene`] → [`render`] prepares a stage →
-//! [`sample`] decides where to trace → [`trace`] finds what rays hit
+//! How a frame flows, in the order of the modules: [`scene`] → [`sim`] moves its smoke →
+//! [`render`] prepares a stage → [`sample`] decides where to trace → [`trace`] finds what rays hit
 //! (triangles of a [`mesh`] by its tree, [`bvh`]), with [`cull`] leaving out what
 //! can't matter → [`shade`] lights it → [`post`] makes pixels, [`output`] files. [`math`] has
 //! everything that would differ between machines, [`parallel`] spreads work over threads,
@@ -47,6 +47,7 @@ pub mod render;
 pub mod sample;
 pub mod scene;
 pub mod shade;
+pub mod sim;
 pub mod study;
 pub mod synth;
 pub mod trace;

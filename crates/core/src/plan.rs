@@ -38,7 +38,7 @@ impl Plan {
         let adaptive = quality.block > 1;
         let grain = materials().any(|m| m.texture.grain > 0.0);
         let bumps = materials().any(|m| m.texture.bump > 0.0);
-        let textured = grain || bumps;
+        let textured = grain || bumps || !scene.voxels.is_empty();
         let pattern = |p| materials().any(|m| m.texture.is_visible() && m.texture.pattern == p);
         let known = quality.rung == Rung::Surface || (quality.rung == Rung::Light && textured);
         let calls = [
@@ -49,6 +49,8 @@ impl Plan {
             (Counter::EndlessTests, scene.cylinders.iter().any(|s| s.length == f32::INFINITY)),
             (Counter::ConeTests, !scene.cones.is_empty()),
             (Counter::TriangleTests, !scene.triangles.is_empty()),
+            (Counter::VoxelTests, !scene.voxels.is_empty()),
+            (Counter::VoxelSteps, scene.voxels.iter().any(|grid| !grid.materials().is_empty())),
             (Counter::FieldTests, !scene.fields.is_empty()),
             (Counter::FieldSteps, !scene.fields.is_empty()),
             (Counter::FieldOcclusion, !scene.fields.is_empty() && scene.occlusion > 0.0),
@@ -75,6 +77,9 @@ impl Plan {
             (Counter::Scratches, pattern(Pattern::Scratches)),
             (Counter::Bumps, bumps),
             (Counter::FogSegments, scene.fog.is_some()),
+            (Counter::SmokeCells, scene.smoke.is_some_and(|smoke| smoke.steps > 0)),
+            (Counter::SmokeLight, scene.smoke.is_some() && lamps),
+            (Counter::SmokeMarched, scene.smoke.is_some()),
             (Counter::Beams, !scene.beams.is_empty()),
             (Counter::KnownSurfaces, adaptive && known && scene.has_known_surfaces()),
             (Counter::Traced, !adaptive || quality.smallest <= 1),
@@ -102,7 +107,8 @@ fn materials(scene: &Scene) -> impl Iterator<Item = &Material> {
     let shapes = (0..scene.shape_count()).map(|i| scene.shape(i).material());
     let mixed = scene.fields.iter().flat_map(|field| &field.nodes).map(|node| node.material);
     let meshes = scene.meshes.instances().iter().map(|i| i.material);
-    shapes.chain(mixed).chain(meshes).map(|i| &scene.materials[i])
+    let cells = scene.voxels.iter().flat_map(|grid| grid.materials());
+    shapes.chain(mixed).chain(meshes).chain(cells).map(|i| &scene.materials[i])
 }
 
 /// Named faults of a scene: data that its quality or the engine's limits can't show.

@@ -43,6 +43,8 @@ pub struct Quality {
     pub epsilon: f32,
     /// Most steps of a ray that marches; one that is near a body by then has hit it.
     pub steps: u32,
+    /// Steps of the eye's rays through smoke, in its cells; rays of mirrors take thrice as long ones.
+    pub smoke: f32,
     /// Side of the tiles of the screen by which small lights are culled, px, at least 1. Changes the
     /// time, never the picture (but for the one that counts the lights).
     pub light_tile: u32,
@@ -72,6 +74,7 @@ impl Quality {
                 cutoff: 0.1,
                 epsilon: 2e-3,
                 steps: 48,
+                smoke: 2.0,
                 light_tile: 16,
                 cull: true,
                 average: 1,
@@ -93,6 +96,7 @@ impl Quality {
                 cutoff: 0.06,
                 epsilon: 1e-3,
                 steps: 64,
+                smoke: 2.0,
                 light_tile: 16,
                 cull: true,
                 average: 1,
@@ -114,6 +118,7 @@ impl Quality {
                 cutoff: 0.04,
                 epsilon: 5e-4,
                 steps: 96,
+                smoke: 1.5,
                 light_tile: 16,
                 cull: true,
                 average: 1,
@@ -135,6 +140,7 @@ impl Quality {
                 cutoff: 0.02,
                 epsilon: 3e-4,
                 steps: 128,
+                smoke: 1.0,
                 light_tile: 16,
                 cull: true,
                 average: 1,
@@ -156,6 +162,7 @@ impl Quality {
                 cutoff: 0.01,
                 epsilon: 2e-4,
                 steps: 192,
+                smoke: 0.5,
                 light_tile: 16,
                 cull: true,
                 average: 1,
@@ -177,6 +184,7 @@ impl Quality {
                 cutoff: 0.001,
                 epsilon: 1e-4,
                 steps: 384,
+                smoke: 0.25,
                 light_tile: 16,
                 cull: true,
                 average: 1,

@@ -18,6 +18,7 @@ mod png_file;
 mod progress;
 mod scale;
 mod sheet;
+mod smoke;
 mod sound;
 mod stats;
 mod subject;
@@ -30,7 +31,7 @@ use std::process::exit;
 /// A command: its name, what follows it, what it does, and the function.
 type Command = (&'static str, &'static str, &'static str, fn(&[String]) -> Result<(), String>);
 
-const COMMANDS: [Command; 10] = [
+const COMMANDS: [Command; 11] = [
     (
         "accuracy",
         "[--quick]",
@@ -49,6 +50,7 @@ const COMMANDS: [Command; 10] = [
     ("stats", "[FRAME] [QUALITY] [WxH]", "counters, time and error of one frame", stats::run),
     ("sound", "[FILE.wav]...", "loudness, peaks and spectrum of the tune, beside those of files", sound::run),
     ("lights", "", "culled against naive small lights", lights::run),
+    ("smoke", "", "what the motion, the light and the sight of smoke cost", smoke::run),
     ("numbers", "[CASES]", "formulas against the truth, as a page and a plot in docs", numbers::run),
     ("values", "[TABLE]", "frames against the table of their one value", values::run),
 ];

@@ -163,6 +163,11 @@ impl Dop {
         })
     }
 
+    /// Bound of the box between two corners, world.
+    pub fn aligned(view: &View, [lo, hi]: [Vec3; 2]) -> Dop {
+        Dop::cuboid(view, (lo + hi) * 0.5, Mat3::IDENTITY, (hi - lo) * 0.5)
+    }
+
     /// Bound of the hull of two discs across `axis` (world) of radii `r` around `a` and `b`.
     #[inline(never)]
     fn discs(view: &View, axis: Vec3, (a, ra): (Vec3, f32), (b, rb): (Vec3, f32)) -> Dop {
@@ -272,7 +277,8 @@ impl Dop {
                     .fold(Vec2::ZERO, |m, e| if e.length_squared() > m.length_squared() { e } else { m });
                 Dop::hull(Dop::with_edges(longest, [edges[0], edges[1]]), 3, &|i| corners[i])
             }
-            Shape::Field(s) => Dop::cuboid(view, (s.lo + s.hi) * 0.5, Mat3::IDENTITY, (s.hi - s.lo) * 0.5),
+            Shape::Voxels(s) => Dop::aligned(view, s.bounds()),
+            Shape::Field(s) => Dop::aligned(view, [s.lo, s.hi]),
         }
     }
 

@@ -30,6 +30,7 @@ fn middle(shape: Shape, lamp: Vec3) -> Vec3 {
             s.apex + s.axis * (0.5 * (s.range[0] + end))
         }
         Shape::Triangle(s) => (s.corners[0] + s.corners[1] + s.corners[2]) / 3.0,
+        Shape::Voxels(s) => (s.bounds()[0] + s.bounds()[1]) * 0.5,
         Shape::Field(s) => (s.lo + s.hi) * 0.5,
     }
 }

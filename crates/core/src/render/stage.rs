@@ -7,6 +7,7 @@ use crate::post::Display;
 use crate::quality::{Quality, Rung};
 use crate::scene::Scene;
 use crate::shade::{Lamp, MAX_LAMPS, Points, lamps};
+use crate::sim::Volume;
 use crate::trace::Shape;
 use glam::{Vec2, Vec3};
 
@@ -44,6 +45,8 @@ pub struct Stage<'a> {
     pub beams: Vec<Dop>,
     /// Bounds of the shapes as the lamps that cast shadows see them; see [`Stage::shafts`].
     shafts: Vec<Shaft>,
+    /// The scene's smoke, if it has any.
+    pub volume: Option<&'a Volume>,
     /// From linear light to display values.
     pub display: Display,
 }
@@ -79,6 +82,7 @@ impl<'a> Stage<'a> {
             width,
             height,
             points,
+            volume: None,
             pattern: 0,
             shift: Vec2::ZERO,
             pixel,
@@ -102,6 +106,7 @@ impl<'a> Stage<'a> {
     /// Whether what is added to finished pixels asks for the depths of their surfaces.
     pub fn wants_depths(&self) -> bool {
         (features::BEAMS && !self.scene.beams.is_empty())
+            || self.volume.is_some()
             || (features::POINTS && self.scene.light_count > 0.0)
     }
 

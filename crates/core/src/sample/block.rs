@@ -3,7 +3,7 @@
 use crate::math::lanes::{F, U, V3, splat};
 use crate::quality::Rung;
 use crate::render::Stage;
-use crate::scene::Material;
+use crate::scene::{Material, Voxels};
 use crate::shade::Codes;
 use crate::trace::{Shape, relief_within};
 use glam::Vec3;
@@ -119,6 +119,13 @@ impl<'a> Sample<'a> {
             return None;
         }
         Some(&stage.scene.materials[shape.material()])
+    }
+    /// The voxels that the first hit is of.
+    pub fn voxels<'s>(self, stage: &Stage<'s>) -> Option<&'s Voxels> {
+        match (self.id() >= 0.0).then(|| stage.scene.shape(self.id() as usize >> 2))? {
+            Shape::Voxels(grid) => Some(grid),
+            _ => None,
+        }
     }
     /// Whether the first surface has relief with smaller cells than `side` px, which samples that
     /// far apart don't tell of.

@@ -62,7 +62,8 @@ pub(super) fn fill(
     counters.add(counter, count);
     let record = Record::new(kind, cell.size);
 
-    let textured = first.material(stage).is_some_and(|m| m.texture.is_visible());
+    let textured =
+        first.material(stage).is_some_and(|m| m.texture.is_visible()) || first.voxels(stage).is_some();
     // Where the colour itself runs smoothly the exact surface would show the same.
     let smooth = equal || known.colour_error() <= stage.quality.tolerance * 0.25;
     let most = match (smooth, textured) {
@@ -138,18 +139,21 @@ fn small(i: U) -> F {
     F::from_bits(i | splat_u(0x4b00_0000)) - splat(8_388_608.0)
 }
 
-/// Rays through pixels, and where they meet the shape of `first` (0 where they don't).
+/// Rays through pixels, and where they meet the shape of `first` (at its depth where they don't).
 #[inline(never)]
 fn meet(stage: &Stage, first: Sample, px: F, py: F, counters: &mut Counters) -> (Rays8, F) {
     let rays = Rays8 { origin: V3::splat(stage.scene.camera.position), direction: stage.directions(px, py) };
     if first.id() < 0.0 {
         return (rays, splat(f32::INFINITY));
     }
-    let (t, _) = stage
-        .scene
-        .shape(first.id() as usize >> 2)
-        .span(&rays, splat(f32::INFINITY), &stage.quality, counters)
-        .first();
+    let (shape, part) = (first.id() as usize >> 2, first.id() as usize & 3);
+    if first.voxels(stage).is_some() {
+        // All samples lie on one plane.
+        let (way, d) = (V3::splat(first.point()) - rays.origin, rays.direction);
+        return (rays, [way.x / d.x, way.y / d.y, way.z / d.z, F::ZERO][part]);
+    }
+    let span = stage.scene.shape(shape).span(&rays, splat(f32::INFINITY), &stage.quality, counters);
+    let (t, _) = span.first();
     (rays, t.simd_gt(F::ZERO).select(t, splat(first.depth())))
 }
 

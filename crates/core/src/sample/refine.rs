@@ -42,7 +42,7 @@ pub(super) struct Known<'a> {
 impl Cell {
     /// Where sample `i` is: the corners in reading order, then the middle, which is a corner of the
     /// children, and in a cell of one pixel the first corner again.
-    fn point(self, i: usize) -> (usize, usize) {
+    pub(super) fn point(self, i: usize) -> (usize, usize) {
         let (size, i) = if i < 4 { (self.size, i) } else { (self.size / 2, 3) };
         (self.x + (i & 1) * size, self.y + (i >> 1) * size)
     }
@@ -250,8 +250,8 @@ impl Surroundings {
         let [depths @ .., _] = known.samples.map(|s| s.depth());
         let deepest = depths.into_iter().fold(0.0, f32::max);
         for (i, dop) in stage.dops.iter().enumerate() {
-            let field = matches!(stage.scene.shape(i), Shape::Field(_));
-            if self.shapes >> (i & 63) & 1 == 0 || i == own || dop.unbounded || dop.near >= deepest || field {
+            let loose = stage.scene.shape(i).is_loose();
+            if self.shapes >> (i & 63) & 1 == 0 || i == own || dop.unbounded || dop.near >= deepest || loose {
                 continue;
             }
             if dop.meets_rectangle(at, reach) && may_cover(stage, i, at, reach, &depths) {
@@ -284,7 +284,10 @@ impl Surroundings {
         }
         let [points @ .., _] = known.samples.map(|s| s.point());
         // Between the corners a curved surface bulges out of their hull.
-        let flat = matches!(stage.scene.shape(own), Shape::Plane(_) | Shape::Triangle(_) | Shape::Facet(..));
+        let flat = matches!(
+            stage.scene.shape(own),
+            Shape::Plane(_) | Shape::Triangle(_) | Shape::Facet(..) | Shape::Voxels(_)
+        );
         let across = (points[3] - points[0]).length().max((points[2] - points[1]).length());
         let region = Region::patch(&points, if flat { 0.0 } else { 0.1 * across });
         let material = &stage.scene.materials[stage.scene.shape(own).material()];
@@ -304,8 +307,9 @@ impl Surroundings {
             let may = occluders(stage.scene, shafts, self.shadows[lamp], Some(own), &region);
             for (i, &bit) in stage.bits.iter().enumerate() {
                 let known_tint = bit > 0.0 && crossed & bit as u32 != 0;
-                // The bound of a field is too loose to say that its shadow is near.
-                let unbounded = matches!(stage.scene.shape(i), Shape::Plane(_) | Shape::Field(_));
+                // Bounds of fields and voxels are too loose to say that a shadow is near.
+                let shape = stage.scene.shape(i);
+                let unbounded = matches!(shape, Shape::Plane(_)) || shape.is_loose();
                 if may >> (i & 63) & 1 == 1 && i != own && !known_tint && !unbounded {
                     return true;
                 }

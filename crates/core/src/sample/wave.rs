@@ -229,6 +229,12 @@ fn shade_packet(
             light += packet.weight * shade::beam(beam, rays, spread, hit.t);
         }
     }
+    if let (true, Some(volume)) = (features::SMOKE && level > 0, stage.volume) {
+        // What the eye sees of it straight is put over the finished pixels.
+        let (through, glow) = volume.march(rays, hit.t, 3.0 * stage.quality.smoke, counters);
+        light += weight * glow;
+        weight = weight * through;
+    }
     if level > 0 && !scene.emitters.is_empty() && !scattered.all() {
         counters.add(Counter::EmitterTests, 8 * scene.emitters.len());
         let (shine, hidden, seen) = shade::emitters(&scene.emitters, rays, spread, hit.t);

@@ -2,7 +2,7 @@
 //!
 //! A scene is made anew for each frame by the show's pure functions of time. Shapes of all kinds
 //! share one index space, [`Scene::shape_count`] long: spheres first, then planes, cylinders,
-//! cones, triangles and fields, each in list order. Facets of meshes follow. Right-handed, y up,
+//! cones, triangles, voxels and fields, each in list order. Facets of meshes follow. Right-handed, y up,
 //! world units.
 
 mod background;
@@ -12,8 +12,10 @@ mod field;
 mod light;
 mod material;
 mod shapes;
+mod smoke;
 mod texture;
 mod track;
+mod voxels;
 
 pub use background::{Background, Disc, Glow, Stop};
 pub use beam::Beam;
@@ -22,8 +24,10 @@ pub use field::{Field, Form, Join, Node};
 pub use light::{Emitter, Light, LightKind, PointLight};
 pub use material::{Channel, Fire, Material};
 pub use shapes::{Cone, Cylinder, Plane, Sphere, Triangle};
+pub use smoke::{Air, Smoke};
 pub use texture::{Pattern, Texture};
 pub use track::{Ease, Key, track};
+pub use voxels::{Edit, Voxels};
 
 use crate::mesh::Assembly;
 use glam::Vec3;
@@ -113,6 +117,8 @@ pub struct Scene {
     pub cones: Vec<Cone>,
     /// Single triangles.
     pub triangles: Vec<Triangle>,
+    /// Grids of solid cells; opaque.
+    pub voxels: Vec<Voxels>,
     /// Bodies as signed distance fields.
     pub fields: Vec<Field>,
     /// Distance up to which fields take ambient light from what is near them, world units; 0 for
@@ -141,6 +147,8 @@ pub struct Scene {
     pub ambient: [Vec3; 2],
     /// Haze, if the scene has any.
     pub fog: Option<Fog>,
+    /// Smoke that moves, if the scene has any.
+    pub smoke: Option<Smoke>,
     /// Grading of the finished picture.
     pub grade: Grade,
     /// Show how the frame was sampled, on this share of the picture's width from the left.
@@ -163,6 +171,7 @@ impl Scene {
             + self.cylinders.len()
             + self.cones.len()
             + self.triangles.len()
+            + self.voxels.len()
             + self.fields.len()
     }
 }

@@ -180,7 +180,10 @@ pub fn direct(
             continue;
         }
         counters.add(Counter::LightEvaluations, 8);
-        let light = tinted(stage, lamp, code) * (lit & (reach / d2));
+        let mut light = tinted(stage, lamp, code) * (lit & (reach / d2));
+        if let Some(volume) = stage.volume.filter(|_| features::SMOKE) {
+            light = light * volume.shadow(k, start, to_lamp);
+        }
         let hidden = if lamp.is_emitter { mirrors } else { zero };
         sum.highlight += (light * highlight(stage, s, l, v, n_l, counters)) & !hidden;
         sum.irradiance += light * n_l;

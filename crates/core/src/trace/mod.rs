@@ -14,6 +14,7 @@ mod sphere;
 mod surface;
 mod texture;
 mod triangle;
+mod voxels;
 
 #[cfg(test)]
 pub(crate) mod check;
@@ -30,13 +31,14 @@ pub use sphere::sphere;
 pub use surface::{Surface, surface};
 pub use texture::relief_within;
 pub use triangle::{Aim, Crossing, triangle};
+pub use voxels::{Walk, voxels};
 
 use crate::counters::{Counter, Counters};
 use crate::features;
 use crate::math::lanes::{F, V3, splat};
 use crate::mesh::Instance;
 use crate::quality::Quality;
-use crate::scene::{Cone, Cylinder, Field, Plane, Scene, Sphere, Triangle};
+use crate::scene::{Cone, Cylinder, Field, Plane, Scene, Sphere, Triangle, Voxels};
 
 /// Eight rays. Directions need not be unit vectors; distances along a ray are in lengths of its
 /// direction. Squares of origins and directions must not leave the range of f32; rays that break
@@ -132,6 +134,7 @@ pub enum Shape<'a> {
     Cylinder(&'a Cylinder),
     Cone(&'a Cone),
     Triangle(&'a Triangle),
+    Voxels(&'a Voxels),
     Field(&'a Field),
     Facet(&'a Instance, usize),
 }
@@ -160,6 +163,12 @@ impl Scene {
             return Shape::Triangle(s);
         }
         i -= self.triangles.len();
+        if features::VOXELS {
+            if let Some(s) = self.voxels.get(i) {
+                return Shape::Voxels(s);
+            }
+            i -= self.voxels.len();
+        }
         if !features::MESHES || i < self.fields.len() {
             return Shape::Field(&self.fields[i]);
         }
@@ -178,6 +187,7 @@ impl Shape<'_> {
             Shape::Cylinder(_) => Counter::CylinderTests,
             Shape::Cone(_) => Counter::ConeTests,
             Shape::Triangle(_) => Counter::TriangleTests,
+            Shape::Voxels(_) => Counter::VoxelTests,
             Shape::Field(_) => Counter::FieldTests,
             Shape::Facet(..) => Counter::FacetTests,
         }
@@ -191,9 +201,15 @@ impl Shape<'_> {
             Shape::Cylinder(s) => s.material,
             Shape::Cone(s) => s.material,
             Shape::Triangle(s) => s.material,
+            Shape::Voxels(s) => s.material,
             Shape::Field(s) => s.nodes.first().map_or(0, |node| node.material),
             Shape::Facet(s, _) => s.material,
         }
+    }
+
+    /// Whether its bounds are too loose to say that it shows, or its shadow falls, where they meet.
+    pub fn is_loose(&self) -> bool {
+        matches!(self, Shape::Voxels(_) | Shape::Field(_))
     }
 
     /// Where `rays` cross the shape. What lies past `limit` along a ray may be missing.
@@ -205,6 +221,8 @@ impl Shape<'_> {
             Shape::Cylinder(s) => cylinder(rays, s),
             Shape::Cone(s) => cone(rays, s),
             Shape::Triangle(s) => triangle(rays, s),
+            Shape::Voxels(s) if features::VOXELS => voxels(rays, s, limit, counters),
+            Shape::Voxels(_) => Span::MISS,
             Shape::Field(s) if features::FIELDS => field(rays, s, limit, quality, counters),
             Shape::Field(_) => Span::MISS,
             Shape::Facet(s, facet) => s.span(*facet, rays),

@@ -8,6 +8,7 @@
 use super::field::{Nodes, locate as on_field};
 use super::ramp::ramp;
 use super::texture::texture;
+use super::voxels::locate as on_voxels;
 use super::{Rays8, Shape};
 use crate::counters::{Counter, Counters};
 use crate::features;
@@ -39,7 +40,8 @@ pub struct Surface {
     pub clearance: F,
     /// Node of a field that has most of the surface; 0 on other shapes.
     pub node: F,
-    /// Which of a field's sharply joined parts that is; on a mesh that stands for something curved,
+    /// Which of a field's sharply joined parts that is; of a grid of voxels, which plane of faces of
+    /// one value; on a mesh that stands for something curved,
     /// the bits in which the hit's id differs from that of its first facet; 0 on other shapes.
     pub part: F,
     /// Material channels, see [`Channel`].
@@ -127,7 +129,7 @@ fn locate(scene: &Scene, shape: Shape, part: u32, p: V3) -> Located {
         Shape::Facet(..) => onto_plane(p, glam::Vec3::ZERO, p),
         Shape::Cylinder(s) => round(p, s.base, s.axis, (s.radius, 0.0), [0.0, s.length], part),
         Shape::Cone(s) => round(p, s.apex, s.axis, (0.0, s.slope), s.range, part),
-        Shape::Field(_) => onto_plane(p, glam::Vec3::ZERO, V3::ZERO),
+        Shape::Voxels(_) | Shape::Field(_) => onto_plane(p, glam::Vec3::ZERO, V3::ZERO),
     }
 }
 
@@ -184,7 +186,8 @@ pub fn surface(scene: &Scene, quality: &Quality, rays: &Rays8, t: F, id: F, spre
     let ids = id.to_array();
     let mut todo = id.simd_ge(F::ZERO).to_bitmask();
     while todo != 0 {
-        let lane_id = ids[todo.trailing_zeros() as usize];
+        let (first, before) = (todo.trailing_zeros() as usize & 7, todo);
+        let lane_id = ids[first];
         let mut mask = id.simd_eq(splat(lane_id));
         todo &= !mask.to_bitmask();
         let (index, part) = (lane_id as usize >> 2, lane_id as u32 & 3);
@@ -201,7 +204,20 @@ pub fn surface(scene: &Scene, quality: &Quality, rays: &Rays8, t: F, id: F, spre
             burn(&scene.materials[shape.material()], mask, &mut s);
             continue;
         }
+        let mut material = shape.material();
+        let mut shade = F::ONE;
         let (point, outward, normal, scale) = match shape {
+            Shape::Voxels(grid) if features::VOXELS => {
+                let face = on_voxels(grid, p, rays.direction, part, t * spread);
+                // Cells of one value at a time.
+                let value = face.value.as_array()[first];
+                mask &= face.value.simd_eq(splat(value));
+                todo = before & !mask.to_bitmask();
+                material += (value as usize).saturating_sub(1);
+                s.part = mask.select(face.plane, s.part);
+                shade = face.shade;
+                (face.point, face.outward, face.outward, V3::splat(grid.lo).max_abs())
+            }
             Shape::Facet(instance, _) if features::MESHES => {
                 let [first, end] = instance.ids(base);
                 mask = id.simd_ge(splat(first)) & id.simd_lt(splat(end));
@@ -222,9 +238,15 @@ pub fn surface(scene: &Scene, quality: &Quality, rays: &Rays8, t: F, id: F, spre
         s.normal = V3::select(mask, normal, s.normal);
         let scale = scale.fast_max(point.max_abs()).fast_max(splat(1e-30));
         s.clearance = mask.select(scale * splat(4.0 / 8_388_608.0), s.clearance);
-        let material = &scene.materials[shape.material()];
+        let material = &scene.materials[material];
         for (lane, value) in s.material.iter_mut().zip(material.channels()) {
             *lane = mask.select(splat(value), *lane);
+        }
+        if features::VOXELS {
+            let colours = [Channel::Colour, Channel::Emission].map(|channel| channel as usize);
+            for i in colours.into_iter().flat_map(|first| first..first + 3) {
+                s.material[i] *= mask.select(shade, F::ONE);
+            }
         }
         burn(material, mask, &mut s);
     }
