@@ -24,7 +24,13 @@ use system::*;
 
 // The system leaves the argument count at the stack pointer, the arguments and the environment
 // above it. A function expects the stack as a call leaves it; `start` follows.
-core::arch::global_asm!(".section .text._start, \"ax\"", ".globl _start", "_start:", "mov rdi, rsp", "push rax");
+core::arch::global_asm!(
+    ".section .text._start, \"ax\"",
+    ".globl _start",
+    "_start:",
+    "mov rdi, rsp",
+    "push rax"
+);
 
 unsafe extern "C" {
     /// What follows the opener: the code.

@@ -84,7 +84,9 @@ fn panic(_: &core::panic::PanicInfo) -> ! {
 #[unsafe(no_mangle)]
 unsafe extern "C" fn memcpy(to: *mut u8, from: *const u8, length: usize) -> *mut u8 {
     // SAFETY: the caller's.
-    unsafe { core::arch::asm!("rep movsb", inout("rdi") to => _, inout("rsi") from => _, inout("rcx") length => _) };
+    unsafe {
+        core::arch::asm!("rep movsb", inout("rdi") to => _, inout("rsi") from => _, inout("rcx") length => _)
+    };
     to
 }
 
@@ -95,6 +97,8 @@ unsafe extern "C" fn memcpy(to: *mut u8, from: *const u8, length: usize) -> *mut
 #[unsafe(no_mangle)]
 unsafe extern "C" fn memset(to: *mut u8, value: i32, length: usize) -> *mut u8 {
     // SAFETY: the caller's.
-    unsafe { core::arch::asm!("rep stosb", inout("rdi") to => _, in("al") value as u8, inout("rcx") length => _) };
+    unsafe {
+        core::arch::asm!("rep stosb", inout("rdi") to => _, in("al") value as u8, inout("rcx") length => _)
+    };
     to
 }
