@@ -10,7 +10,7 @@ use std::io::Read;
 use std::path::Path;
 use std::process::{Output, Stdio};
 use support::picture::psnr;
-use support::{command, frame, names, run};
+use support::{command, frame, names, parts, run};
 use tempfile::tempdir;
 
 /// One line on standard error that contains `part`, nothing on standard output, code 2.
@@ -188,26 +188,14 @@ fn without_a_name_the_file_is_named_after_the_frame() {
     assert_eq!(names(dir.path()), ["frame-000007.png", "frame-18446744073709551615.png"]);
     let last = png(&dir.path().join("frame-18446744073709551615.png"));
     let default = default_quality();
-    let length: u64 = parts(dir.path()).iter().map(|(_, part)| part.frames).sum();
+    let length: u64 = parts().map(|(_, part)| part.frames).sum();
     assert!(last.2 == frame(u64::MAX % length, (16, 9), default), "frame n is frame n mod the length");
-}
-
-/// The parts that the program has, with their places: the packed file may lack the last ones.
-fn parts(dir: &std::path::Path) -> Vec<(usize, &'static show::Part)> {
-    let has = |part: &show::Part| {
-        let output = run(dir, &["--scene", part.name, "--frame", "0", "--size", "1x1", "-o", "-"]);
-        output.status.success()
-    };
-    let found: Vec<_> = show::PARTS.iter().enumerate().take_while(|(_, part)| has(part)).collect();
-    let missing = &show::PARTS[found.len()..];
-    assert!(missing.iter().all(|part| part.name == "smoke"), "only Smoke may be missing");
-    found
 }
 
 #[test]
 fn a_scene_counts_its_own_frames_and_starts_over() {
     let dir = tempdir().unwrap();
-    for (index, part) in parts(dir.path()) {
+    for (index, part) in parts() {
         for n in [0, 100, part.frames - 1, part.frames, u64::MAX] {
             let number = n.to_string();
             let output =

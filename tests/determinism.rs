@@ -11,7 +11,7 @@ use luc_core::render::Renderer;
 use support::crossing::{self, Backdrop, Thing};
 use support::golden::{self, FINGERPRINTS, FRAMES, SIZE, VALUE_SIZE, VALUES};
 use support::picture::{Picture, fingerprint};
-use support::run;
+use support::{is_there, run};
 
 /// Renders frame `n` of the show on `threads` threads.
 fn on_threads(renderer: &mut Renderer, threads: usize, n: u64, size: (u32, u32), preset: &str) -> Picture {
@@ -198,11 +198,6 @@ fn executable(part: &str, frame: u64, preset: &str, (width, height): (u32, u32))
         args.join(" ")
     );
     Picture::read_ppm(&output.stdout).unwrap_or_else(|e| panic!("{}: {e}", args.join(" ")))
-}
-
-/// Whether the executable under test has a part: others than the one of these tests may be packed.
-fn is_there(part: &str) -> bool {
-    std::env::var_os("LUC_BIN").is_none() || golden::in_every_build(part)
 }
 
 #[test]

@@ -32,6 +32,16 @@ pub fn command(dir: &Path) -> Command {
     command
 }
 
+/// The parts that the program under test has, with their places: a packed one may lack the last.
+pub fn parts() -> impl Iterator<Item = (usize, &'static show::Part)> {
+    show::PARTS.iter().enumerate().filter(|(_, part)| is_there(part.name))
+}
+
+/// Whether the program under test has a part: others than the one of these tests may be packed.
+pub fn is_there(part: &str) -> bool {
+    std::env::var_os("LUC_BIN").is_none() || golden::in_every_build(part)
+}
+
 /// Names in `dir`, sorted.
 pub fn names(dir: &Path) -> Vec<String> {
     let entries = std::fs::read_dir(dir).unwrap();

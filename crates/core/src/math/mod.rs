@@ -17,6 +17,8 @@ pub mod lanes_f64;
 pub mod lanes_fn;
 pub mod noise;
 pub mod quadratic;
+#[cfg(any(test, feature = "study"))]
+pub mod random;
 pub mod sampling;
 pub mod scalar;
 

@@ -6,15 +6,14 @@
 mod cases;
 mod naive;
 mod plot;
-mod random;
 mod real;
 mod report;
 mod truth;
 
-use cases::{KERNELS, Kernel, Measure, U};
+use cases::{Kernel, Measure, U};
 use luc_core::math::lanes::{F, splat};
 use luc_core::math::lanes_f64::{D, splat_d};
-use random::Random;
+use luc_core::math::random::Random;
 use real::Arguments;
 use std::hint::black_box;
 use std::time::Instant;
@@ -155,8 +154,7 @@ fn time(kernel: &Kernel) -> [f64; 3] {
 pub fn run(args: &[String]) -> Result<(), String> {
     let cases = args.first().map_or(Ok(CASES), |n| n.parse()).map_err(|_| "CASES must be a whole number")?;
     let folder = args.get(1).map_or(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs"), String::as_str);
-    let rows: Vec<Row> = KERNELS
-        .iter()
+    let rows: Vec<Row> = cases::all()
         .map(|kernel| {
             let row = measure(kernel, cases);
             println!("{}", report::line(&row));

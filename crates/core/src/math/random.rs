@@ -1,8 +1,8 @@
-//! Hard cases by chance: numbers of uniform exponent, and rays that graze, run along axes, or begin on the
-//! surface.
+//! Hard cases by chance, for tests and studies: numbers of uniform exponent, and rays that graze, run along
+//! axes, or begin on the surface.
 
+use super::hash::{hash2, unit};
 use glam::Vec3;
-use luc_core::math::hash::{hash2, unit};
 
 /// Reproducible random numbers: a counter under a hash.
 pub struct Random(u32, u32);
@@ -13,6 +13,7 @@ impl Random {
         Self(0, stream)
     }
 
+    /// 32 random bits.
     pub fn bits(&mut self) -> u32 {
         self.0 += 1;
         hash2(self.0, self.1)
@@ -34,7 +35,7 @@ impl Random {
         f32::from_bits(((127 + exponent) as u32) << 23 | self.bits() >> 9)
     }
 
-    /// The same of either sign, now and then ±0.
+    /// Like [`Random::size`], of either sign, now and then ±0.
     pub fn signed(&mut self, lo: i32, hi: i32) -> f32 {
         let size = if self.one_in(16) { 0.0 } else { self.size(lo, hi) };
         if self.one_in(2) { -size } else { size }
@@ -49,7 +50,7 @@ impl Random {
         }
     }
 
-    /// A unit vector, one in eight along an axis.
+    /// A unit vector, one in eight along a coordinate axis.
     pub fn direction(&mut self) -> Vec3 {
         if self.one_in(8) {
             return [Vec3::X, Vec3::Y, Vec3::Z, -Vec3::X, -Vec3::Y, -Vec3::Z][self.bits() as usize % 6];
@@ -67,9 +68,10 @@ impl Random {
         self.direction() * self.size(lo, hi)
     }
 
-    /// A ray through about `target` on a surface with this normal, of a body this large about this axis: any,
-    /// grazing, along the axis or across it; from afar, from near, from the surface itself.
-    pub fn ray(&mut self, target: Vec3, normal: Vec3, axis: Vec3, size: f32) -> [Vec3; 2] {
+    /// A ray through about `target`, a point on a surface with this normal, of a body about this
+    /// large around this axis: any, grazing, along the axis or across it; from afar, from near,
+    /// from the surface itself.
+    pub fn ray(&mut self, target: Vec3, normal: Vec3, axis: Vec3, size: f32) -> (Vec3, Vec3) {
         let tilt = self.direction() * self.signed(-30, -1);
         let any = self.direction();
         let direction = match self.bits() % 8 {
@@ -82,6 +84,6 @@ impl Random {
         };
         let direction = direction * if self.one_in(4) { self.size(-8, 8) } else { 1.0 };
         let back = if self.one_in(8) { 0.0 } else { size * self.signed(-8, 14) };
-        [target - direction.normalize_or(any) * back, direction]
+        (target - direction.normalize_or(any) * back, direction)
     }
 }
