@@ -60,10 +60,9 @@ pub const PARTS: &[Part] = &[
     part("gold", &score::GOLD, gold::scene),
     part("facets", &score::FACETS, facets::scene),
     part("blobs", &score::BLOBS, blobs::scene),
-    part("end", &score::END, end::scene),
-    // Last, so that all frames before it are the same without it.
     #[cfg(feature = "smoke")]
     part("smoke", &score::SMOKE, smoke::scene),
+    part("end", &score::END, end::scene),
 ];
 
 /// Length of the whole show in frames; frame n is frame n mod this.

@@ -32,7 +32,7 @@ pub fn command(dir: &Path) -> Command {
     command
 }
 
-/// The parts that the program under test has, with their places: a packed one may lack the last.
+/// The parts that the program under test has, with their places: a packed one may lack some.
 pub fn parts() -> impl Iterator<Item = (usize, &'static show::Part)> {
     show::PARTS.iter().enumerate().filter(|(_, part)| is_there(part.name))
 }
@@ -50,11 +50,23 @@ pub fn names(dir: &Path) -> Vec<String> {
     names
 }
 
-/// Frame `n` of the show rendered in this process.
+/// Frame `n` of the show of the program under test, rendered in this process.
 pub fn frame(n: u64, size: (u32, u32), quality: &str) -> Vec<u32> {
+    let mut local = n % parts().map(|(_, part)| part.frames).sum::<u64>();
+    for (index, part) in parts() {
+        if local < part.frames {
+            return frame_of(index, local, size, quality);
+        }
+        local -= part.frames;
+    }
+    unreachable!("frame {n} lies in a part")
+}
+
+/// A frame of the part with this index, rendered in this process.
+pub fn frame_of(part: usize, local: u64, size: (u32, u32), quality: &str) -> Vec<u32> {
     let (_, quality) = Quality::PRESETS.iter().find(|(name, _)| *name == quality).expect("a preset's name");
     let mut pixels = vec![0; (size.0 * size.1) as usize];
-    show::frame(&mut Renderer::default(), n, size, quality, &mut pixels);
+    show::frame(&mut Renderer::default(), show::start(part) + local, size, quality, &mut pixels);
     pixels
 }
 
