@@ -31,7 +31,7 @@ pub use sphere::sphere;
 pub use surface::{Surface, surface};
 pub use texture::relief_within;
 pub use triangle::{Aim, Crossing, triangle};
-pub use voxels::{Walk, voxels};
+pub use voxels::voxels;
 
 use crate::counters::{Counter, Counters};
 use crate::features;

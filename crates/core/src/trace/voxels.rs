@@ -1,162 +1,93 @@
-//! Rays against voxels: a walk from face to face (Amanatides and Woo 1987) that takes bricks without a
-//! solid cell in one step.
+//! Rays against voxels: a walk from face to face (Amanatides and Woo 1987), eight rays at a time, that takes
+//! bricks without a solid cell in one step.
 //!
 //! Nothing accumulates: the distance of a face is `(face - o) / d` wherever it is asked for, so it only
-//! grows along the ray, and a walk by bricks meets the very cells of a walk by cells. Ties have an order:
-//! a face across x comes before one across y at the same distance, and that before one across z. So a
-//! ray through an edge visits one of the two cells beside it, always the same.
+//! grows along the ray. Where a walk begins, or leaves an empty brick, its cell is that of a point a little
+//! before, and the faces that still come lead on from there; so it meets the very cells of a walk by cells.
+//! Ties have an order: a face across x comes before one across y at the same distance, and that before one
+//! across z. So a ray through an edge visits one of the two cells beside it, always the same.
 
 use super::{Rays8, Span};
 use crate::counters::{Counter, Counters};
 use crate::math::hash::{mix_x8, unit_x8};
-use crate::math::lanes::{F, V3, splat};
+use crate::math::lanes::{F, V3, from_bits, splat};
 use crate::math::noise;
 use crate::scene::Voxels;
 use glam::Vec3;
 
-/// A ray in the grid's cells.
-#[derive(Clone, Copy)]
-pub struct Walk {
-    origin: [f32; 3],
-    direction: [f32; 3],
-    inverse: [f32; 3],
-}
-
 /// Directions nearer to 0 are taken for this, which is too small to be seen, and so never give 0/0.
 const LEVEL: f32 = 1e-30;
 
-impl Walk {
-    /// A ray from `origin` along `direction`, both in cells from the grid's corner.
-    pub fn new(origin: Vec3, direction: Vec3) -> Self {
-        let direction = direction.to_array().map(|d| if d.abs() < LEVEL { LEVEL } else { d });
-        Walk { origin: origin.to_array(), direction, inverse: direction.map(|d| 1.0 / d) }
-    }
+/// How far before its faces a walk looks for its cell, in cells: more than rounding moves a point.
+const ROOM: f32 = 0.01;
 
-    /// Distance of the face number `face` across an axis.
-    #[inline(always)]
-    fn at(&self, axis: usize, face: i32) -> f32 {
-        (face as f32 - self.origin[axis]) * self.inverse[axis]
-    }
+/// Steps of a walk, at most: more than across any grid.
+const MOST_STEPS: usize = 4 * Voxels::MOST;
 
-    /// Number of the face by which the ray comes into the cells `from..from + side`, or leaves them.
-    #[inline(always)]
-    fn face(&self, axis: usize, from: i32, side: i32, leaving: bool) -> i32 {
-        if (self.direction[axis] > 0.0) == leaving { from + side } else { from }
-    }
-
-    /// When, and across which axis, the ray comes into a box of cells, at least 0 (and then across
-    /// none, -1).
-    #[inline(always)]
-    pub fn enters(&self, from: [i32; 3], side: [i32; 3]) -> (f32, i32) {
-        let mut last = (0.0, -1);
-        for axis in 0..3 {
-            let t = self.at(axis, self.face(axis, from[axis], side[axis], false));
-            if t >= last.0 {
-                last = (t, axis as i32);
-            }
-        }
-        last
-    }
-
-    /// When, and across which axis, it leaves it.
-    #[inline(always)]
-    pub fn leaves(&self, from: [i32; 3], side: [i32; 3]) -> (f32, i32) {
-        let mut first = (f32::INFINITY, 0);
-        for axis in 0..3 {
-            let t = self.at(axis, self.face(axis, from[axis], side[axis], true));
-            if t < first.0 {
-                first = (t, axis as i32);
-            }
-        }
-        first
-    }
-
-    /// The cell that the ray comes into at `event`, among those of a box which it comes into then or
-    /// crosses.
-    #[inline(always)]
-    fn cell(&self, event: (f32, i32), from: [i32; 3], side: [i32; 3], leaving: bool) -> [i32; 3] {
-        let (t, across) = event;
-        let mut cell = [0; 3];
-        for axis in 0..3 {
-            let up = self.direction[axis] > 0.0;
-            if axis as i32 == across {
-                let face = self.face(axis, from[axis], side[axis], leaving);
-                cell[axis] = if up { face } else { face - 1 };
-                continue;
-            }
-            let step = if up { 1 } else { -1 };
-            let (least, most) = (from[axis], from[axis] + side[axis] - 1);
-            // Near enough; then the faces themselves are asked.
-            let mut i = ((self.origin[axis] + self.direction[axis] * t) as i32).clamp(least, most);
-            let before = |face: i32| {
-                let other = self.at(axis, face);
-                other < t || (other == t && (axis as i32) < across)
-            };
-            while i != (if up { least } else { most }) && !before(self.face(axis, i, 1, false)) {
-                i -= step;
-            }
-            while i != (if up { most } else { least }) && before(self.face(axis, i, 1, true)) {
-                i += step;
-            }
-            cell[axis] = i;
-        }
-        cell
-    }
-
-    /// Distance and axis of the first face of a solid cell that the ray comes to before `limit`. The
-    /// cell that it starts in doesn't count.
-    pub fn first(&self, grid: &Voxels, limit: f32, steps: &mut usize) -> Option<(f32, i32)> {
-        let bricks = grid.bricks().map(|n| n as i32);
-        let all = bricks.map(|n| 4 * n);
-        let mut event = self.enters([0; 3], all);
-        if event >= self.leaves([0; 3], all) {
-            return None;
-        }
-        let mut cell = self.cell(event, [0; 3], all, false);
-        loop {
-            if event.0 >= limit || (0..3).any(|axis| cell[axis] as u32 >= all[axis] as u32) {
-                return None;
-            }
-            *steps += 1;
-            let [x, y, z] = cell;
-            let brick = grid.brick((((z >> 2) * bricks[1] + (y >> 2)) * bricks[0] + (x >> 2)) as usize);
-            if brick >> (x & 3 | (y & 3) << 2 | (z & 3) << 4) & 1 == 1 && event.0 > 0.0 {
-                return Some(event);
-            }
-            if brick == 0 {
-                let from = [x & -4, y & -4, z & -4];
-                event = self.leaves(from, [4; 3]);
-                cell = self.cell(event, from, [4; 3], true);
-            } else {
-                event = self.leaves(cell, [1; 3]);
-                let axis = event.1 as usize;
-                cell[axis] += if self.direction[axis] > 0.0 { 1 } else { -1 };
-            }
-        }
-    }
-}
-
-/// Where `rays` come to a solid cell before `limit`. The parts are the axes across which they do.
+/// Where `rays` come to the first face of a solid cell before `limit`. The parts are the axes across which
+/// they do. The cell that a ray starts in doesn't count.
 #[inline(never)]
 pub fn voxels(rays: &Rays8, grid: &Voxels, limit: F, counters: &mut Counters) -> Span {
     let mut span = Span::MISS;
     let [lo, hi] = grid.bounds();
-    // With room for what rounds differently there.
-    let room = grid.cell * 1e-3;
-    let (enter, exit) = rays.in_box(lo - room, hi + room, limit);
-    let mut todo = enter.simd_le(exit).to_bitmask();
-    let (origin, direction) = (grid.in_cells(rays.origin), rays.direction * splat(1.0 / grid.cell));
-    let mut steps = 0;
-    while todo != 0 {
-        let lane = todo.trailing_zeros() as usize;
-        todo &= todo - 1;
-        let walk = Walk::new(origin.lane(lane), direction.lane(lane));
-        if let Some((t, axis)) = walk.first(grid, limit.as_array()[lane & 7], &mut steps) {
-            span.enter.as_mut_array()[lane & 7] = t;
-            span.enter_part.as_mut_array()[lane & 7] = axis as f32;
+    let (mut now, exit) = rays.in_box(lo - grid.cell * ROOM, hi + grid.cell * ROOM, limit);
+    let mut busy = now.simd_le(exit);
+    let (o, d) = (grid.in_cells(rays.origin), rays.direction * splat(1.0 / grid.cell));
+    let (o, d) = ([o.x, o.y, o.z], [d.x, d.y, d.z]);
+    let d = d.map(|d| d.abs().simd_lt(splat(LEVEL)).select(splat(LEVEL), d));
+    let inverse = d.map(|d| F::ONE / d);
+    let up = d.map(|d| d.simd_gt(F::ZERO));
+    let room = inverse.iter().fold(splat(f32::INFINITY), |room, i| room.fast_min(i.abs())) * splat(ROOM);
+    let place = |axis: usize, t: F| (o[axis] + d[axis] * t).floor();
+    // Distances of the far faces of boxes of cells.
+    let far = |from: &[F; 3], side: f32| -> [F; 3] {
+        std::array::from_fn(|axis| (from[axis] + (up[axis] & splat(side)) - o[axis]) * inverse[axis])
+    };
+    let mut cell: [F; 3] = std::array::from_fn(|axis| place(axis, now));
+    for _ in 0..MOST_STEPS {
+        let [x, y, z] = far(&cell, 1.0);
+        now = x.fast_min(y).fast_min(z);
+        busy &= now.simd_lt(exit);
+        if !busy.any() {
+            break;
+        }
+        let x = x.simd_eq(now);
+        let y = y.simd_eq(now) & !x;
+        let across = [x, y, !(x | y)];
+        let (mut index, mut bit, mut inside) = (F::ZERO, F::ZERO, busy);
+        let mut from = cell;
+        for axis in [2, 1, 0] {
+            cell[axis] += across[axis] & up[axis].select(F::ONE, splat(-1.0));
+            let bricks = splat(grid.bricks()[axis] as f32);
+            let brick = (cell[axis] * splat(0.25)).floor();
+            from[axis] = brick * splat(4.0);
+            inside &= brick.simd_ge(F::ZERO) & brick.simd_lt(bricks);
+            index = index * bricks + brick;
+            bit = bit * splat(4.0) + (cell[axis] - from[axis]);
+        }
+        let [index, bit] = [index, bit].map(|x| x.fast_trunc_int().to_array());
+        let (mut solid, mut empty) = (0, 0);
+        let mut todo = inside.to_bitmask();
+        counters.add(Counter::VoxelSteps, todo.count_ones() as usize);
+        while todo != 0 {
+            let lane = todo.trailing_zeros() as usize & 7;
+            todo &= todo - 1;
+            let brick = grid.brick(index[lane] as usize);
+            solid |= ((brick >> bit[lane] & 1) as u8) << lane;
+            empty |= u8::from(brick == 0) << lane;
+        }
+        let hit = from_bits(solid) & now.simd_gt(F::ZERO);
+        span.enter = hit.select(now, span.enter);
+        span.enter_part = hit.select((y & F::ONE) + (across[2] & splat(2.0)), span.enter_part);
+        busy &= !hit;
+        let [x, y, z] = far(&from, 4.0);
+        let leave = x.fast_min(y).fast_min(z) - room;
+        let skip = from_bits(empty) & leave.simd_gt(now + room);
+        for axis in 0..3 {
+            let last = place(axis, leave).fast_max(from[axis]).fast_min(from[axis] + splat(3.0));
+            cell[axis] = skip.select(last, cell[axis]);
         }
     }
-    counters.add(Counter::VoxelSteps, steps);
     Span { exit: span.enter, exit_part: span.enter_part, ..span }
 }
 
@@ -178,24 +109,13 @@ pub struct Face {
 /// `width` wide, world units.
 #[inline(never)]
 pub fn locate(grid: &Voxels, p: V3, direction: V3, part: u32, width: F) -> Face {
-    let mut q = grid.in_cells(p);
-    let mut outward = V3::ZERO;
-    let pick = |v: &mut V3, f: &mut dyn FnMut(&mut F)| {
-        f(match part {
-            0 => &mut v.x,
-            1 => &mut v.y,
-            _ => &mut v.z,
-        })
-    };
-    let mut along = direction;
-    let mut back = F::ZERO;
-    pick(&mut along, &mut |d| back = d.simd_gt(F::ZERO).select(splat(-1.0), F::ONE));
-    pick(&mut outward, &mut |n| *n = back);
-    let mut plane = F::ZERO;
-    pick(&mut q, &mut |x| {
-        plane = (*x + splat(0.5)).floor();
-        *x = plane;
-    });
+    let axis = V3::splat(Vec3::AXES[part as usize % 3]);
+    let outward = axis * direction.dot(axis).simd_gt(F::ZERO).select(splat(-1.0), F::ONE);
+    let q = grid.in_cells(p);
+    // The sum is exact: the point lies next to the plane.
+    let along = q.dot(axis);
+    let plane = (along + splat(0.5)).floor();
+    let q = q + axis * (plane - along);
     let point = V3::splat(grid.lo) + q * splat(grid.cell);
     let middle = q - outward * splat(0.5);
     let value = grid.values(middle);
