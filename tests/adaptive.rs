@@ -8,7 +8,7 @@ use luc::show;
 use luc_core::counters::{Counter, Counters};
 use luc_core::quality::Quality;
 use luc_core::render::{Renderer, Stage};
-use luc_core::sample::{Kind, Scratch, TILE, Tile, refine, smoke};
+use luc_core::sample::{Kind, Scratch, TILE, Tile, refine};
 use luc_core::scene::Scene;
 use luc_core::sim::{Simulation, Volume};
 use std::cell::RefCell;
@@ -203,23 +203,20 @@ fn the_shadow_of_a_ball_of_three_pixels_is_never_lost() {
 
 /// How each pixel of a scene was got, and whether all light is finite, straight from the sampler.
 fn records(scene: &Scene, size: (u32, u32), quality: &Quality) -> (Vec<Kind>, bool) {
+    let mut simulation = SMOKE.take();
+    let (mut counters, mut shown) = (Counters::default(), Vec::new());
+    let volume = scene.smoke.as_ref().map(|of| {
+        simulation.run(of, &mut counters);
+        Volume::new(of, &simulation, &mut shown, &mut counters)
+    });
     let mut stage = Stage::new(scene, quality, size.0, size.1);
-    let mut volume = Volume::default();
-    if let Some(of) = &scene.smoke {
-        SMOKE.with_borrow_mut(|simulation| {
-            let (mut counters, eye) = (Counters::default(), scene.camera.position);
-            simulation.run(of, &mut counters);
-            volume.light(of, simulation, &stage.lamps, eye, &mut counters);
-        });
-        stage.volume = Some(&volume);
-    }
+    stage.volume = volume.as_ref();
     let (width, height) = (size.0 as usize, size.1 as usize);
     let mut kinds = vec![Kind::Traced; width * height];
     let (mut scratch, mut tile, mut finite) = (Scratch::default(), Tile::default(), true);
     for top in (0..height).step_by(TILE) {
         for left in (0..width).step_by(TILE) {
             refine(&stage, &mut scratch, (left, top), &mut tile);
-            smoke(&stage, &mut scratch, (left, top), &mut tile);
             for y in top..height.min(top + TILE) {
                 for x in left..width.min(left + TILE) {
                     kinds[y * width + x] = tile.record[(y - top) * TILE + x - left].kind();
@@ -228,6 +225,8 @@ fn records(scene: &Scene, size: (u32, u32), quality: &Quality) -> (Vec<Kind>, bo
             }
         }
     }
+    drop(volume);
+    SMOKE.set(simulation);
     (kinds, finite)
 }
 

@@ -57,7 +57,7 @@ counters! {
     Bumps "bumps of normals",
     FogSegments "fog segments",
     SmokeCells "cells of smoke simulated",
-    SmokeLight "cells of smoke lit",
+    SmokeShown "cells of smoke shown",
     SmokeMarched "places in smoke marched through",
     Beams "rays against beams",
     KnownSurfaces "known surfaces",

@@ -49,7 +49,7 @@ pub const ALL: [(&str, Counter); 17] = [
     ("fields", Counter::FieldSteps),
     ("field-occlusion", Counter::FieldOcclusion),
     ("voxels", Counter::VoxelSteps),
-    ("smoke", Counter::SmokeLight),
+    ("smoke", Counter::SmokeShown),
     ("beams", Counter::Beams),
     ("endless", Counter::EndlessTests),
     ("bounces", Counter::ScatterRays),

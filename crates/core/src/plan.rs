@@ -78,7 +78,7 @@ impl Plan {
             (Counter::Bumps, bumps),
             (Counter::FogSegments, scene.fog.is_some()),
             (Counter::SmokeCells, scene.smoke.is_some_and(|smoke| smoke.steps > 0)),
-            (Counter::SmokeLight, scene.smoke.is_some() && lamps),
+            (Counter::SmokeShown, scene.smoke.is_some()),
             (Counter::SmokeMarched, scene.smoke.is_some()),
             (Counter::Beams, !scene.beams.is_empty()),
             (Counter::KnownSurfaces, adaptive && known && scene.has_known_surfaces()),

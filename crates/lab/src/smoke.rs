@@ -1,10 +1,10 @@
-//! What smoke costs: its motion, its light, and what it adds to a frame.
+//! What smoke costs: its motion, and what it adds to a frame.
 
 use glam::Vec3;
 use luc::show;
 use luc_core::counters::{Counter, Counters};
 use luc_core::quality::Quality;
-use luc_core::render::{Renderer, Stage};
+use luc_core::render::Renderer;
 use luc_core::scene::{Air, Edit, Scene, Smoke, Voxels};
 use luc_core::sim::{Simulation, Volume};
 use std::time::Instant;
@@ -42,7 +42,7 @@ fn middle(mut times: Vec<f64>) -> String {
 /// Measures and prints.
 pub fn run(_: &[String]) -> Result<(), String> {
     let mut counters = Counters::default();
-    let air = Air { lift: 4.0, whirl: 1.0, ..Air::DEFAULT };
+    let air = Air { lift: 4.0, ..Air::DEFAULT };
     let whole = Smoke { cell: 0.05, size: CELLS, air, ..Smoke::new(fire) };
     let mut simulation = Simulation::default();
     simulation.run(&Smoke { steps: 60, ..whole }, &mut counters);
@@ -51,17 +51,15 @@ pub fn run(_: &[String]) -> Result<(), String> {
 
     let part = show::PARTS.iter().find(|part| part.name == "smoke").ok_or("the show has no smoke")?;
     for (name, quality) in &Quality::PRESETS[2..4] {
-        let (mut simulation, mut volume) = (Simulation::default(), Volume::default());
+        let (mut simulation, mut shown) = (Simulation::default(), vec![]);
         let (mut renderer, mut bare) = (Renderer::default(), Renderer::default());
         let mut pixels = vec![0; (SIZE.0 * SIZE.1) as usize];
-        let (mut moving, mut lighting, mut all, mut without) = (vec![], vec![], vec![], vec![]);
+        let (mut moving, mut showing, mut all, mut without) = (vec![], vec![], vec![], vec![]);
         for n in FRAMES.start - 1..FRAMES.end {
             let scene = (part.scene)(n);
             let smoke = scene.smoke.as_ref().ok_or("the part has no smoke")?;
-            let stage = Stage::new(&scene, quality, SIZE.0, SIZE.1);
             moving.push(timed(|| simulation.run(smoke, &mut counters)));
-            let eye = scene.camera.position;
-            lighting.push(timed(|| volume.light(smoke, &simulation, &stage.lamps, eye, &mut counters)));
+            showing.push(timed(|| drop(Volume::new(smoke, &simulation, &mut shown, &mut counters))));
             all.push(timed(|| renderer.frame(&scene, n, SIZE, quality, &mut pixels)));
             let clear = Scene { smoke: None, ..scene.clone() };
             without.push(timed(|| bare.frame(&clear, n, SIZE, quality, &mut pixels)));
@@ -71,7 +69,7 @@ pub fn run(_: &[String]) -> Result<(), String> {
         let steps = moving[1..].iter().copied().filter(|&time| time > 0.1).collect();
         println!("{name}, {}x{}, frames {FRAMES:?} of the part", SIZE.0, SIZE.1);
         println!("  a step, every other frame {}", middle(steps));
-        println!("  light, every frame        {}", rest(lighting));
+        println!("  made ready, every frame   {}", rest(showing));
         println!("  the whole frame           {}", rest(all));
         println!("  the same without smoke    {}", rest(without));
         let count = |counter: Counter| renderer.counters.get(counter);

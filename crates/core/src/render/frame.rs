@@ -6,9 +6,9 @@ use crate::features;
 use crate::math::sampling::r2;
 use crate::post::Bloom;
 use crate::quality::Quality;
-use crate::sample::{Scratch, TILE, Tile, beams, refine, share_edges, smoke, smooth_edges};
+use crate::sample::{Scratch, TILE, Tile, beams, refine, share_edges, smooth_edges};
 use crate::scene::Scene;
-use crate::sim::{Simulation, Volume};
+use crate::sim::{Eight, Simulation, Volume};
 use crate::study::Phase;
 use crate::{parallel, post};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -41,7 +41,7 @@ pub struct Renderer {
     scratch: Pool,
     bloom: Bloom,
     simulation: Simulation,
-    volume: Volume,
+    smoke: Vec<Eight>,
     /// What the last frame did; all 0 without the feature `counters`.
     pub counters: Counters,
 }
@@ -58,21 +58,19 @@ impl Renderer {
         quality: &Quality,
         pixels: &mut [u32],
     ) {
-        let mut stage = Stage::new(scene, quality, width, height);
         self.counters = Counters::default();
-        if let Some(smoke) = scene.smoke.as_ref().filter(|_| features::SMOKE) {
+        let volume = scene.smoke.as_ref().filter(|_| features::SMOKE).map(|smoke| {
             self.simulation.run(smoke, &mut self.counters);
-            let eye = scene.camera.position;
-            self.volume.light(smoke, &self.simulation, &stage.lamps, eye, &mut self.counters);
-            stage.volume = Some(&self.volume);
-        }
+            Volume::new(smoke, &self.simulation, &mut self.smoke, &mut self.counters)
+        });
+        let mut stage = Stage::new(scene, quality, width, height);
+        stage.volume = volume.as_ref();
         let across = (width as usize).div_ceil(TILE);
         let down = (height as usize).div_ceil(TILE);
         self.tiles.resize_with(across * down, Tile::default);
         let pool = &self.scratch;
         // Edges are shared out after the first pass, which finds them.
-        let passes: [(Pass, bool); 4] =
-            [(refine, true), (smooth_edges, false), (smoke, false), (beams, false)];
+        let passes: [(Pass, bool); 3] = [(refine, true), (smooth_edges, false), (beams, false)];
         let mut sums = Vec::new();
         for pattern in 0..quality.average {
             // The first pattern lies in the middle of the pixels.

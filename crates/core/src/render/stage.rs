@@ -46,7 +46,7 @@ pub struct Stage<'a> {
     /// Bounds of the shapes as the lamps that cast shadows see them; see [`Stage::shafts`].
     shafts: Vec<Shaft>,
     /// The scene's smoke, if it has any.
-    pub volume: Option<&'a Volume>,
+    pub volume: Option<&'a Volume<'a>>,
     /// From linear light to display values.
     pub display: Display,
 }
@@ -106,7 +106,6 @@ impl<'a> Stage<'a> {
     /// Whether what is added to finished pixels asks for the depths of their surfaces.
     pub fn wants_depths(&self) -> bool {
         (features::BEAMS && !self.scene.beams.is_empty())
-            || self.volume.is_some()
             || (features::POINTS && self.scene.light_count > 0.0)
     }
 
@@ -150,7 +149,13 @@ impl<'a> Stage<'a> {
         } else {
             features::SMOOTH && self.scene.meshes.facet(shape - count).0.mesh().is_smooth()
         };
-        if vague { Rung::Colour } else { self.quality.rung }
+        if vague {
+            Rung::Colour
+        } else if self.volume.is_some() {
+            self.quality.rung.min(Rung::Light)
+        } else {
+            self.quality.rung
+        }
     }
 
     /// Mask of the shapes that may show in the square of `side` px at `corner`, see

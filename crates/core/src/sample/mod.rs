@@ -12,7 +12,6 @@ mod interpolate;
 mod rays;
 mod refine;
 mod scatter;
-mod smoke;
 mod tile;
 mod wave;
 
@@ -20,6 +19,5 @@ pub use beams::beams;
 pub use edges::smooth_edges;
 pub use refine::refine;
 pub use scatter::ROUGH;
-pub use smoke::smoke;
 pub use tile::{Kind, Record, TILE, Tile, share_edges};
 pub use wave::Scratch;

@@ -216,6 +216,13 @@ fn shade_packet(
     let mut light = zero;
     let mut signature = F::ZERO;
 
+    if let (true, Some(volume)) = (features::SMOKE, stage.volume) {
+        // Before the fog, which is mostly behind it.
+        let pace = stage.quality.smoke * if level > 0 { 3.0 } else { 1.0 };
+        let (through, glow) = volume.march(rays, hit.t, pace, &stage.lamps, counters);
+        light += weight * glow;
+        weight = weight * through;
+    }
     if let Some(fog) = &scene.fog {
         counters.add(Counter::FogSegments, 8);
         let (through, scattered) = shade::fog(fog, rays, hit.t);
@@ -228,12 +235,6 @@ fn shade_packet(
         for beam in &scene.beams {
             light += packet.weight * shade::beam(beam, rays, spread, hit.t);
         }
-    }
-    if let (true, Some(volume)) = (features::SMOKE && level > 0, stage.volume) {
-        // What the eye sees of it straight is put over the finished pixels.
-        let (through, glow) = volume.march(rays, hit.t, 3.0 * stage.quality.smoke, counters);
-        light += weight * glow;
-        weight = weight * through;
     }
     if level > 0 && !scene.emitters.is_empty() && !scattered.all() {
         counters.add(Counter::EmitterTests, 8 * scene.emitters.len());

@@ -12,11 +12,7 @@ pub struct Air {
     pub heat: f32,
     /// Upward acceleration per unit of temperature.
     pub lift: f32,
-    /// Downward acceleration per unit of density.
-    pub weight: f32,
-    /// Strength by which whirls are kept from being lost in the grid, 0 for none.
-    pub whirl: f32,
-    /// Acceleration of all smoke, for wind.
+    /// Acceleration per unit of density, for wind and weight.
     pub wind: Vec3,
     /// Rate at which density is lost.
     pub fade: f32,
@@ -37,8 +33,6 @@ impl Air {
         density: 1.0,
         heat: 1.0,
         lift: 0.0,
-        weight: 0.0,
-        whirl: 0.0,
         wind: Vec3::ZERO,
         fade: 0.0,
         cool: 0.0,
@@ -66,6 +60,9 @@ pub struct Smoke {
     pub steps: u32,
     /// Weight of the step before in what is shown, for frames between two steps, 0 to 1.
     pub behind: f32,
+    /// Where the scene's first two lights are, world: what comes of them through the smoke is a part of its
+    /// state, so they stay there. Light of others, which are best within, isn't dimmed.
+    pub lamps: [Vec3; 2],
     /// Extinction per world unit and unit of density.
     pub extinction: f32,
     /// Share of the extinction by which light on its way from the lamps is lost; less than 1 stands for
@@ -73,7 +70,8 @@ pub struct Smoke {
     pub depth: f32,
     /// Share of light that is scattered, not swallowed, linear RGB.
     pub albedo: Vec3,
-    /// Two phase functions of Henyey and Greenstein: the weight of the first, and each one's g.
+    /// Two phase functions of Schlick's, (1 - k²) / (4π (1 - k cos)²): the weight of the first, and each
+    /// one's k, which for Henyey and Greenstein's g is about 1.55 g - 0.55 g³ (Blasi et al. 1993).
     pub phase: [f32; 3],
     /// Factor on the light of lamps.
     pub gain: f32,
@@ -94,6 +92,7 @@ impl Smoke {
             figure,
             steps: 0,
             behind: 0.0,
+            lamps: [Vec3::ZERO; 2],
             extinction: 1.0,
             depth: 1.0,
             albedo: Vec3::ONE,
@@ -113,5 +112,6 @@ impl Smoke {
     pub fn moves_like(&self, other: &Smoke) -> bool {
         std::ptr::fn_addr_eq(self.figure, other.figure)
             && (self.lo, self.cell, self.size, self.air) == (other.lo, other.cell, other.size, other.air)
+            && (self.lamps, self.extinction, self.depth) == (other.lamps, other.extinction, other.depth)
     }
 }

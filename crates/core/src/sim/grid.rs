@@ -1,20 +1,26 @@
-//! Where the cells of a grid stand in memory: rows along x, with empty cells around everything.
+//! Where the cells of a grid stand in memory, work on all of them, and what lies between them.
 //!
-//! The border makes neighbours of every cell be there, so no kernel asks where it is. One border of
-//! eight cells serves the end of a row and the beginning of the next.
+//! Cells stand in rows along x, with a border of cells around everything that no work touches: so the
+//! neighbours of every cell are there, and no kernel asks where it is. One border of eight cells serves the
+//! end of a row and the beginning of the next. A field has eight numbers per element, which are those of one
+//! cell or one number each of eight cells along x.
 
+use crate::math::lanes::{F, splat};
 use crate::parallel;
 
-/// Empty cells before each row, and after the last.
+/// Cells of the border before each row, and after the last.
 pub const GAP: usize = 8;
 
-/// Work on a row: where its first cell is, that cell's number, and what is made of the row.
-pub type Row<'a, T> = dyn Fn([usize; 3], usize, &mut [T]) + Sync + 'a;
+/// An element of a field.
+pub type Eight = [f32; 8];
+
+/// Work on an element: its first cell's place, that cell's number, and the element.
+pub type Work<'a> = dyn Fn([usize; 3], usize, &mut Eight) + Sync + 'a;
 
 /// Shape of a grid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Grid {
-    /// Cells along each axis, without the border.
+    /// Cells along each axis, without the border; those along x are a multiple of 8.
     pub size: [usize; 3],
 }
 
@@ -36,44 +42,50 @@ impl Grid {
         self.size.contains(&0)
     }
 
-    /// Number of a cell.
+    /// Number of a cell; places count from the border's first.
     #[inline(always)]
     pub fn index(&self, [x, y, z]: [usize; 3]) -> usize {
         let [_, row, slice] = self.steps();
-        (z + 1) * slice + (y + 1) * row + GAP + x
+        z * slice + y * row + GAP - 1 + x
     }
 
-    /// The cell below a point, and where between it and the next the point lies along each axis, from 0
-    /// to 1. Points count cells from the middle of the border's first cell. They are bounded before they
-    /// become whole numbers.
-    #[inline(always)]
-    pub fn corner(&self, at: [f32; 3]) -> ([usize; 3], [f32; 3]) {
-        let (mut cell, mut within) = ([0; 3], [0.0; 3]);
-        for axis in 0..3 {
-            let most = self.size[axis] as f32;
-            let at = at[axis].max(0.0).min(most + 1.0);
-            cell[axis] = at.min(most) as i32 as usize;
-            within[axis] = at - cell[axis] as f32;
-        }
-        (cell, within)
-    }
-
-    /// Number of a cell that is counted from the border's first.
-    #[inline(always)]
-    pub fn bordered(&self, [x, y, z]: [usize; 3]) -> usize {
-        let [_, row, slice] = self.steps();
-        z * slice + y * row + x + GAP - 1
-    }
-
-    /// Calls `work` for each row, with the row of `out`, by slices on all threads.
+    /// Calls `work` for each element of `out` that isn't border, by slices on all threads; `cells` is how
+    /// many an element stands for, 1 or 8.
     #[inline(never)]
-    pub fn rows<T: Send>(&self, out: &mut [T], work: &Row<T>) {
+    pub fn each(&self, out: &mut [Eight], cells: usize, work: &Work) {
         let [_, row, slice] = self.steps();
-        let [nx, ny, nz] = self.size;
-        parallel::each(out.chunks_mut(slice).skip(1).take(nz), |z, out| {
-            for (y, out) in out.chunks_mut(row).skip(1).take(ny).enumerate() {
-                work([0, y, z], self.index([0, y, z]), &mut out[GAP..GAP + nx]);
+        let [_, ny, nz] = self.size;
+        parallel::each(out.chunks_mut(slice / cells).skip(1).take(nz), |z, out| {
+            for (y, out) in out.chunks_mut(row / cells).skip(1).take(ny).enumerate() {
+                for (x, out) in out.iter_mut().skip(GAP / cells).enumerate() {
+                    let place = [x * cells + 1, y + 1, z + 1];
+                    work(place, self.index(place), out);
+                }
             }
         });
     }
+
+    /// What a field of one cell per element holds at a point, in the first three lanes, between the eight
+    /// cells around it. Points count cells as places do, and are bounded before they become whole numbers.
+    #[inline(never)]
+    pub fn sample(&self, field: &[Eight], at: F) -> F {
+        let [x, y, z] = self.size.map(|n| n as f32);
+        let most = F::new([x, y, z, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        let at = at.fast_max(F::ZERO).fast_min(most + F::ONE);
+        let below = at.fast_min(most).fast_trunc_int();
+        let within = at - F::from_i32x8(below);
+        let (below, within) = (below.as_array(), within.as_array());
+        let first = self.index([below[0] as usize, below[1] as usize, below[2] as usize]);
+        let [_, row, slice] = self.steps();
+        let between = |a: F, b: F, axis: usize| a + (b - a) * splat(within[axis]);
+        let line = |i: usize| between(F::new(field[i]), F::new(field[i + 1]), 0);
+        let sheet = |i: usize| between(line(i), line(i + row), 1);
+        between(sheet(first), sheet(first + slice), 2)
+    }
+}
+
+/// The first three lanes of a vector.
+#[inline(always)]
+pub fn lanes([x, y, z]: [f32; 3]) -> F {
+    F::new([x, y, z, 0.0, 0.0, 0.0, 0.0, 0.0])
 }

@@ -58,7 +58,8 @@ struct Ray {
 
 impl Ray {
     fn new(origin: Vec3, direction: Vec3) -> Self {
-        let direction = Vec3::from_array(direction.to_array().map(|d| if d.abs() < LEVEL { LEVEL } else { d }));
+        let direction =
+            Vec3::from_array(direction.to_array().map(|d| if d.abs() < LEVEL { LEVEL } else { d }));
         Ray { origin, direction }
     }
 
@@ -86,7 +87,13 @@ impl Ray {
 }
 
 /// What the walk finds for a ray in all lanes: distance and axis.
-fn walk(grid: &Voxels, origin: Vec3, direction: Vec3, limit: f32, counters: &mut Counters) -> Option<(f32, i32)> {
+fn walk(
+    grid: &Voxels,
+    origin: Vec3,
+    direction: Vec3,
+    limit: f32,
+    counters: &mut Counters,
+) -> Option<(f32, i32)> {
     let rays = Rays8 { origin: V3::splat(origin), direction: V3::splat(direction) };
     let span = voxels(&rays, grid, splat(limit), counters);
     let (t, axis) = (span.enter.to_array()[3], span.enter_part.to_array()[3]);
