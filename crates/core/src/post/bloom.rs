@@ -106,7 +106,6 @@ impl Bloom {
     }
 
     /// Blurs the first octaves, and joins them in the first.
-    #[inline(never)]
     fn spread(&mut self, amount: f32, octaves: usize) {
         let last = octaves - 1;
         for level in 0..=last {

@@ -51,8 +51,8 @@ impl Post {
             for (row, y) in rows.chunks_mut(width).zip(strip * ROWS..) {
                 for (out, x) in row.chunks_mut(8).zip((0..).step_by(8)) {
                     let colour = match changed {
-                        Some(picture) => picture.near(x, y, 0, 0),
-                        None => develop(stage, tiles, glow, (x, y)),
+                        Some(picture) if features::EFFECTS => picture.near(x, y, 0, 0),
+                        _ => develop(stage, tiles, glow, (x, y)),
                     };
                     print(stage, colour, (x, y), n, out);
                 }
@@ -64,7 +64,6 @@ impl Post {
 }
 
 /// Display values of eight pixels from (`x`, `y`) on.
-#[inline(never)]
 fn develop(stage: &Stage, tiles: &[Tile], glow: Option<&Picture>, (x, y): (usize, usize)) -> V3 {
     let tile = &tiles[y / TILE * (stage.width as usize).div_ceil(TILE) + x / TILE];
     let at = (y % TILE) * TILE + x % TILE;
@@ -92,7 +91,6 @@ fn develop(stage: &Stage, tiles: &[Tile], glow: Option<&Picture>, (x, y): (usize
 }
 
 /// Vignette, grain and bytes of eight pixels from (`x`, `y`) on, or as many as `out` takes.
-#[inline(never)]
 fn print(stage: &Stage, mut colour: V3, (x, y): (usize, usize), n: u64, out: &mut [u32]) {
     let grade = &stage.scene.grade;
     let (w, h) = (stage.width as f32, stage.height as f32);

@@ -31,7 +31,7 @@ fn with(value: impl Fn(usize, usize) -> Vec3 + Sync) -> Chain {
 /// Noise with bright dots.
 fn noisy(x: usize, y: usize) -> Vec3 {
     let value = |k: u32| unit(hash2((3 * x) as u32 + k, y as u32));
-    Vec3::new(value(0), value(1), value(2)) * if (x + y) % 7 == 0 { 1.0 } else { 0.5 }
+    Vec3::new(value(0), value(1), value(2)) * if (x + y).is_multiple_of(7) { 1.0 } else { 0.5 }
 }
 
 fn run(chain: &mut Chain, effects: &[Effect]) {
