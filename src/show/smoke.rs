@@ -1,11 +1,26 @@
 //! Smoke: a small house of voxels in the evening sun, in violet light from the other side, turns into
 //! smoke layer by layer, until only its window is left.
 
-use super::paint::{degrees, key, orbit, seconds, surface, swing, times, v};
+use super::paint::{degrees, key, orbit, seconds, surface, swing};
 use super::still::{Lamp, Still};
 use glam::Vec3;
 use luc_core::math::hash::{hash2, mix, unit};
 use luc_core::scene::*;
+
+/// A number with seven binary places after the first: it packs in half the bytes.
+const fn short(x: f32) -> f32 {
+    f32::from_bits((x.to_bits() + 0x8000) & 0xffff_0000)
+}
+
+/// A vector or colour.
+const fn v(x: f32, y: f32, z: f32) -> Vec3 {
+    times(Vec3::new(x, y, z), 1.0)
+}
+
+/// A colour times a strength.
+const fn times(c: Vec3, k: f32) -> Vec3 {
+    Vec3::new(short(c.x * k), short(c.y * k), short(c.z * k))
+}
 
 /// Cells of the house, and their side.
 const SIZE: [usize; 3] = [34, 26, 26];
@@ -15,9 +30,8 @@ const CORNER: Vec3 = v(-1.7, 0.0, -1.3);
 /// What the cells are; materials follow in this order.
 const WALL: u8 = 1;
 const ROOF: u8 = 2;
-const CHIMNEY: u8 = 3;
-const WINDOW: u8 = 4;
-const EMBER: u8 = 5;
+const WINDOW: u8 = 3;
+const EMBER: u8 = 4;
 
 /// The last cell: the middle of the window.
 const LAST: [i32; 3] = [19, 5, 20];
@@ -33,30 +47,22 @@ const FRONT: [Key; 5] = [
 
 /// The house, as it was built.
 fn built([x, y, z]: [i32; 3]) -> u8 {
-    let within = |i: i32, lo: i32, hi: i32| i >= lo && i <= hi;
-    // The roof steps in by one a layer, and hangs over by one.
-    let step = y - 11;
-    let roof = within(step, 0, 9) && within(x, 5, 28) && within(z, 3 + step, 22 - step);
-    if within(x, 10, 12) && within(z, 8, 10) && within(y, 13, 24) {
-        return CHIMNEY;
-    }
-    if roof {
-        let edge = z == 3 + step || z == 22 - step;
-        let gable = within(x, 6, 27);
-        return if edge {
-            ROOF
-        } else if gable && (x == 6 || x == 27) {
-            WALL
-        } else {
-            0
-        };
-    }
-    if within(x, 18, 20) && within(y, 4, 6) && z >= 20 {
+    // Cells inwards from the overhang of the roof, which steps in by one a layer; its height.
+    let (a, b, h) = ((x - 5).min(28 - x), (z - 3).min(22 - z), y - 11);
+    let near = |i: i32, middle: i32| (i - middle).abs() < 2;
+    let chimney = near(x, 11) && near(z, 9) && h > 1 && h < 14;
+    let door = near(x, 10) && h < -4 && z == 21;
+    if near(x, 19) && near(y, 5) && z > 19 {
         return if z == 20 { WINDOW } else { 0 };
     }
-    let door = within(x, 9, 11) && y < 7 && z == 21;
-    let shell = within(x, 6, 27) && within(z, 4, 21) && (x == 6 || x == 27 || z == 4 || z == 21);
-    if shell && y < 11 && !door { WALL } else { 0 }
+    let wall = a == 1 && b > h.max(0) || b == 1 && a > 0 && h < 0;
+    if h >= 0 && a >= 0 && b == h && !chimney {
+        ROOF
+    } else if (wall && !door) || chimney {
+        WALL
+    } else {
+        0
+    }
 }
 
 /// The house at a step of the smoke.
@@ -70,9 +76,7 @@ fn figure(step: u32) -> Voxels {
         let value = built(at);
         let [x, y, z] = at;
         let bits = mix(hash2(x as u32, y as u32), z as u32);
-        // About normal: the sum of two.
-        let noise = (unit(bits) + unit(mix(bits, 1))) * 3.4 - 3.4;
-        let own = y as f32 + 0.62 * x as f32 + 0.15 * (z as f32 - 13.0) + noise;
+        let own = y as f32 + 0.625 * x as f32 + 0.15625 * z as f32 + unit(bits) * 5.0 - 4.5;
         let over = own - front;
         match value {
             0 => Voxels::EMPTY,
@@ -87,7 +91,7 @@ fn figure(step: u32) -> Voxels {
     house
 }
 
-static SMOKE: Smoke = Smoke {
+static SMOKE: Rules = Rules {
     lo: v(-2.6, 0.0, -1.6),
     cell: 0.08,
     size: [72, 72, 40],
@@ -100,7 +104,8 @@ static SMOKE: Smoke = Smoke {
         cool: 0.35,
         drag: 0.2,
         sweeps: 16,
-    },
+    }
+    .motion(0.08),
     lamps: [STILL.lights[0].position, STILL.lights[1].position],
     extinction: 7.0,
     depth: 0.8,
@@ -109,7 +114,7 @@ static SMOKE: Smoke = Smoke {
     gain: 0.3,
     ambient: v(0.045, 0.022, 0.06),
     glow: v(0.05, 0.012, 0.0),
-    ..Smoke::new(figure)
+    ..Rules::new(figure)
 };
 
 static STILL: Still = Still {
@@ -133,7 +138,6 @@ static STILL: Still = Still {
         Material { reflection: 1.0, ..surface(v(0.06, 0.04, 0.06), 0.38, 0.0) },
         surface(v(0.42, 0.36, 0.34), 0.6, 0.0),
         surface(v(0.3, 0.075, 0.035), 0.6, 0.0),
-        surface(v(0.22, 0.12, 0.1), 0.6, 0.0),
         Material { emission: times(v(1.0, 0.6, 0.2), 4.2), ..Material::DEFAULT },
         Material { emission: times(v(1.0, 0.15, 0.015), 1.2), ..Material::DEFAULT },
     ],
@@ -175,7 +179,7 @@ pub fn scene(frame: u64) -> Scene {
     let t = seconds(frame);
     let mut scene = STILL.scene();
     let steps = frame.div_ceil(2) as u32;
-    scene.smoke = Some(Smoke { steps, behind: (frame & 1) as f32 * 0.5, ..SMOKE });
+    scene.smoke = Some(Smoke { rules: &SMOKE, steps, behind: (frame & 1) as f32 * 0.5 });
     scene.voxels = vec![figure(steps)];
     let way = t / 24.0;
     let target = v(0.7, 1.5 + 0.25 * way, 0.0);

@@ -5,7 +5,7 @@ use luc::show;
 use luc_core::counters::{Counter, Counters};
 use luc_core::quality::Quality;
 use luc_core::render::Renderer;
-use luc_core::scene::{Air, Edit, Scene, Smoke, Voxels};
+use luc_core::scene::{Air, Edit, Rules, Scene, Smoke, Voxels};
 use luc_core::sim::{Simulation, Volume};
 use std::time::Instant;
 
@@ -42,8 +42,13 @@ fn middle(mut times: Vec<f64>) -> String {
 /// Measures and prints.
 pub fn run(_: &[String]) -> Result<(), String> {
     let mut counters = Counters::default();
-    let air = Air { lift: 4.0, ..Air::DEFAULT };
-    let whole = Smoke { cell: 0.05, size: CELLS, air, ..Smoke::new(fire) };
+    static RULES: Rules = Rules {
+        cell: 0.05,
+        size: CELLS,
+        air: Air { lift: 4.0, ..Air::DEFAULT }.motion(0.05),
+        ..Rules::new(fire)
+    };
+    let whole = Smoke { rules: &RULES, steps: 0, behind: 0.0 };
     let mut simulation = Simulation::default();
     simulation.run(&Smoke { steps: 60, ..whole }, &mut counters);
     let steps = (61..121).map(|steps| timed(|| simulation.run(&Smoke { steps, ..whole }, &mut counters)));

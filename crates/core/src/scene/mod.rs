@@ -26,7 +26,7 @@ pub use field::{Field, Form, Join, Node};
 pub use light::{Emitter, Light, LightKind, PointLight};
 pub use material::{Channel, Fire, Material};
 pub use shapes::{Cone, Cylinder, Plane, Sphere, Triangle};
-pub use smoke::{Air, Smoke};
+pub use smoke::{Air, Motion, Rules, Smoke};
 pub use texture::{Pattern, Texture};
 pub use track::{Ease, Key, track};
 pub use voxels::{Edit, Voxels};

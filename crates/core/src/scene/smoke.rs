@@ -39,13 +39,43 @@ impl Air {
         drag: 0.0,
         sweeps: 16,
     };
+
+    /// What it comes to in a step, for cells of a side, world units.
+    pub const fn motion(self, cell: f32) -> Motion {
+        let pace = Self::SECONDS * Self::SECONDS / cell;
+        let Vec3 { x, y, z } = self.wind;
+        let slow = 1.0 - self.drag * Self::SECONDS;
+        let (fade, cool) = (1.0 - self.fade * Self::SECONDS, 1.0 - self.cool * Self::SECONDS);
+        Motion {
+            keep: [slow, slow, slow, fade, cool, 0.0, 0.0, 0.0],
+            source: [f32::MIN, f32::MIN, f32::MIN, self.density, self.heat, 0.0, 0.0, 0.0],
+            by_density: [x * pace, y * pace, z * pace, 0.0, 0.0, 0.0, 0.0, 0.0],
+            by_heat: [0.0, self.lift * pace, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+            sweeps: self.sweeps,
+        }
+    }
+}
+
+/// How the air moves in a step; lanes as those of a cell's values.
+#[derive(Clone, Copy, Debug)]
+pub struct Motion {
+    /// Factors.
+    pub keep: [f32; 8],
+    /// The least values where smoke comes from.
+    pub source: [f32; 8],
+    /// What a unit of density adds.
+    pub by_density: [f32; 8],
+    /// What a unit of temperature adds.
+    pub by_heat: [f32; 8],
+    /// Sweeps of the pressure.
+    pub sweeps: u32,
 }
 
 /// Smoke in a box. It begins without any, and what it is after so many steps follows from the
 /// [`Voxels`] at each of them: solid ones are in its way, those of value [`Voxels::SMOKE`] fill their
 /// place with it.
 #[derive(Clone, Copy, Debug)]
-pub struct Smoke {
+pub struct Rules {
     /// Least corner, world.
     pub lo: Vec3,
     /// Side of a cell, world units.
@@ -53,13 +83,9 @@ pub struct Smoke {
     /// Cells along each axis; those along x are a multiple of 8.
     pub size: [usize; 3],
     /// How it moves.
-    pub air: Air,
+    pub air: Motion,
     /// The voxels at a step, from 1 on: a pure function.
     pub figure: fn(u32) -> Voxels,
-    /// Steps that it has taken.
-    pub steps: u32,
-    /// Weight of the step before in what is shown, for frames between two steps, 0 to 1.
-    pub behind: f32,
     /// Where the scene's first two lights are, world: what comes of them through the smoke is a part of its
     /// state, so they stay there. Light of others, which are best within, isn't dimmed.
     pub lamps: [Vec3; 2],
@@ -81,17 +107,15 @@ pub struct Smoke {
     pub glow: Vec3,
 }
 
-impl Smoke {
-    /// A kind of smoke, without place or size.
+impl Rules {
+    /// A kind of smoke, without place or size, in still air.
     pub const fn new(figure: fn(u32) -> Voxels) -> Self {
         Self {
             lo: Vec3::ZERO,
             cell: 1.0,
             size: [0; 3],
-            air: Air::DEFAULT,
+            air: Air::DEFAULT.motion(1.0),
             figure,
-            steps: 0,
-            behind: 0.0,
             lamps: [Vec3::ZERO; 2],
             extinction: 1.0,
             depth: 1.0,
@@ -107,11 +131,15 @@ impl Smoke {
     pub fn hi(&self) -> Vec3 {
         self.lo + Vec3::from_array(self.size.map(|n| n as f32)) * self.cell
     }
+}
 
-    /// Whether both run through the same states, however far they have come.
-    pub fn moves_like(&self, other: &Smoke) -> bool {
-        std::ptr::fn_addr_eq(self.figure, other.figure)
-            && (self.lo, self.cell, self.size, self.air) == (other.lo, other.cell, other.size, other.air)
-            && (self.lamps, self.extinction, self.depth) == (other.lamps, other.extinction, other.depth)
-    }
+/// Smoke at a moment.
+#[derive(Clone, Copy, Debug)]
+pub struct Smoke {
+    /// What it is: the same rules run through the same states.
+    pub rules: &'static Rules,
+    /// Steps that it has taken.
+    pub steps: u32,
+    /// Weight of the step before in what is shown, for frames between two steps, 0 to 1.
+    pub behind: f32,
 }

@@ -109,18 +109,15 @@ impl Voxels {
         value.wrapping_add(1) > 1
     }
 
-    /// Gives each cell with `lo <= place < hi` the value that `rule` makes of place and value.
-    pub fn edit_by(&mut self, lo: [i32; 3], hi: [i32; 3], rule: &mut dyn FnMut([i32; 3], u8) -> u8) {
+    /// Gives each cell the value that `rule` makes of place and value.
+    pub fn edit_all_by(&mut self, rule: &mut dyn FnMut([i32; 3], u8) -> u8) {
         let [nx, ny, _] = self.size;
         let [bx, by, _] = self.bricks();
         self.bricks.fill(0);
         let (mut least, mut most) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
         for (i, value) in self.cells.iter_mut().enumerate() {
             let (x, y, z) = (i % nx, i / nx % ny, i / (nx * ny));
-            let at = [x as i32, y as i32, z as i32];
-            if (0..3).all(|axis| at[axis] >= lo[axis] && at[axis] < hi[axis]) {
-                *value = rule(at, *value);
-            }
+            *value = rule([x as i32, y as i32, z as i32], *value);
             if Self::is_solid(*value) {
                 let corner = Vec3::new(x as f32, y as f32, z as f32);
                 (least, most) = (least.min(corner), most.max(corner + 1.0));
@@ -134,9 +131,12 @@ impl Voxels {
         };
     }
 
-    /// [`Voxels::edit_by`] over the whole grid.
-    pub fn edit_all_by(&mut self, rule: &mut dyn FnMut([i32; 3], u8) -> u8) {
-        self.edit_by([0; 3], self.size.map(|n| n as i32), rule);
+    /// [`Voxels::edit_all_by`] for the cells with `lo <= place < hi`.
+    pub fn edit_by(&mut self, lo: [i32; 3], hi: [i32; 3], rule: &mut dyn FnMut([i32; 3], u8) -> u8) {
+        self.edit_all_by(&mut |at, value| {
+            let within = (0..3).all(|axis| at[axis] >= lo[axis] && at[axis] < hi[axis]);
+            if within { rule(at, value) } else { value }
+        });
     }
 
     /// Does one of the usual things to each cell with `lo <= place < hi`.

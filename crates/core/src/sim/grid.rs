@@ -55,11 +55,13 @@ impl Grid {
     pub fn each(&self, out: &mut [Eight], cells: usize, work: &Work) {
         let [_, row, slice] = self.steps();
         let [_, ny, nz] = self.size;
-        parallel::each(out.chunks_mut(slice / cells).skip(1).take(nz), |z, out| {
-            for (y, out) in out.chunks_mut(row / cells).skip(1).take(ny).enumerate() {
-                for (x, out) in out.iter_mut().skip(GAP / cells).enumerate() {
-                    let place = [x * cells + 1, y + 1, z + 1];
-                    work(place, self.index(place), out);
+        parallel::each(out.chunks_mut(slice / cells), |z, out| {
+            for (y, out) in out.chunks_mut(row / cells).enumerate() {
+                if (1..=nz).contains(&z) && (1..=ny).contains(&y) {
+                    for (x, out) in out[GAP / cells..].iter_mut().enumerate() {
+                        let place = [x * cells + 1, y, z];
+                        work(place, self.index(place), out);
+                    }
                 }
             }
         });

@@ -5,7 +5,7 @@ use super::{DENSITY, Simulation, State};
 use crate::counters::{Counter, Counters};
 use crate::math::lanes::{F, V3, least, splat};
 use crate::math::lanes_fn::exp;
-use crate::scene::{Smoke, Voxels};
+use crate::scene::{Rules, Smoke, Voxels};
 use crate::shade::Lamp;
 use crate::trace::{Rays8, voxels};
 
@@ -21,7 +21,7 @@ const MOST_STEPS: usize = 4096;
 
 /// Smoke made ready for rays.
 pub struct Volume<'a> {
-    smoke: &'a Smoke,
+    smoke: &'a Rules,
     grid: Grid,
     /// The cells as they are shown.
     shown: &'a [Eight],
@@ -33,20 +33,21 @@ impl<'a> Volume<'a> {
     /// The smoke of a simulation; `room` is for what is shown between two steps.
     #[inline(never)]
     pub fn new(
-        smoke: &'a Smoke,
+        now: &Smoke,
         simulation: &'a Simulation,
         room: &'a mut Vec<Eight>,
         counters: &mut Counters,
     ) -> Self {
+        let smoke = now.rules;
         let grid = Grid { size: smoke.size };
         counters.add(Counter::SmokeShown, grid.size.iter().product());
         let State { cells, before, .. } = simulation.state();
         let mut shown = cells;
-        if smoke.behind > 0.0 {
+        if now.behind > 0.0 {
             room.clone_from(cells);
             grid.each(room, 1, &|_, i, out| {
-                let now = F::new(*out);
-                *out = (now + (F::new(before[i]) - now) * splat(smoke.behind)).to_array();
+                let last = F::new(*out);
+                *out = (last + (F::new(before[i]) - last) * splat(now.behind)).to_array();
             });
             shown = room;
         }
@@ -65,11 +66,11 @@ impl<'a> Volume<'a> {
         Volume { smoke, grid, shown, full }
     }
 
-    /// Density, temperature, and how much light of the first two lamps comes to points, where the mask says so;
-    /// elsewhere there is no smoke, and all of the light.
+    /// Density, temperature, and how much light of the first two lamps is lost on its way to points, where the
+    /// mask says so; elsewhere 0.
     #[inline(never)]
     fn at(&self, p: V3, mask: F) -> [F; 4] {
-        let mut found = [F::ZERO, F::ZERO, F::ONE, F::ONE];
+        let mut found = [F::ZERO; 4];
         let places = self.full.in_cells(p) * splat(BRICK as f32);
         let mut todo = mask.to_bitmask();
         while todo != 0 {
@@ -114,7 +115,7 @@ impl<'a> Volume<'a> {
                 continue;
             }
             counters.add(Counter::SmokeMarched, busy.to_bitmask().count_ones() as usize);
-            let [density, heat, shares @ ..] = self.at(p, busy);
+            let [density, heat, dark @ ..] = self.at(p, busy);
             let mut source = V3::splat(smoke.ambient) + V3::splat(smoke.glow) * heat;
             for (i, lamp) in lamps.iter().enumerate() {
                 let way = V3::splat(lamp.position) - p;
@@ -127,7 +128,7 @@ impl<'a> Volume<'a> {
                     splat(1.0 - k * k) / (d * d)
                 };
                 let turned = lobe(a) * splat(weight) + lobe(b) * splat(1.0 - weight);
-                let share = shares.get(i).copied().unwrap_or(F::ONE);
+                let share = F::ONE - dark.get(i).copied().unwrap_or(F::ZERO);
                 source += V3::splat(lamp.colour * smoke.gain) * (lamp.lobe(-l) * turned * share / d2);
             }
             let next = through * exp(-(density * splat(smoke.extinction) * step));
@@ -147,7 +148,7 @@ impl<'a> Volume<'a> {
         let (lo, hi) = (lo.max(self.smoke.lo + half), hi.min(self.smoke.hi() - half));
         let (enter, exit) = Rays8 { origin: from, direction: way }.in_box(lo, hi, F::ONE);
         let [.., a, b] = self.at(from + way * enter, enter.simd_lt(exit));
-        [a, b].get(lamp).copied().unwrap_or(F::ONE)
+        F::ONE - [a, b].get(lamp).copied().unwrap_or(F::ZERO)
     }
 }
 

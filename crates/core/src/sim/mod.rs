@@ -1,6 +1,6 @@
 //! Smoke that moves: the state of the air after so many steps, and what light makes of it.
 //!
-//! The state is a pure function of the [`Smoke`] and its number of steps: always the same steps from
+//! The state is a pure function of the [`Rules`] and the number of steps: always the same steps from
 //! still air on, each a fixed order of plain operations. [`Simulation`] only remembers the latest, so that
 //! the next frame costs a step; earlier ones are found from the start.
 
@@ -13,15 +13,15 @@ mod tests;
 
 pub use grid::{Eight, Grid};
 pub use light::Volume;
-pub use state::{DENSITY, FASTEST, HEAT, LIGHT, OPEN, State};
+pub use state::{DARK, DENSITY, FASTEST, HEAT, SOLID, State};
 
 use crate::counters::Counters;
-use crate::scene::Smoke;
+use crate::scene::{Rules, Smoke};
 
 /// Remembers how far smoke has come.
 #[derive(Default)]
 pub struct Simulation {
-    of: Option<Smoke>,
+    of: Option<&'static Rules>,
     step: u32,
     state: State,
 }
@@ -30,12 +30,12 @@ impl Simulation {
     /// Brings the state to that of `smoke`.
     #[inline(never)]
     pub fn run(&mut self, smoke: &Smoke, counters: &mut Counters) {
-        if self.step > smoke.steps || !self.of.is_some_and(|of| of.moves_like(smoke)) {
-            *self = Simulation { of: Some(*smoke), step: 0, state: State::new(smoke) };
+        if self.step > smoke.steps || !self.of.is_some_and(|of| std::ptr::eq(of, smoke.rules)) {
+            *self = Simulation { of: Some(smoke.rules), step: 0, state: State::new(smoke.rules) };
         }
         while self.step < smoke.steps {
             self.step += 1;
-            self.state.step(smoke, self.step, counters);
+            self.state.step(smoke.rules, self.step, counters);
         }
     }
 

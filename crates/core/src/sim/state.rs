@@ -16,18 +16,17 @@
 use super::grid::{Eight, Grid, lanes};
 use crate::counters::{Counter, Counters};
 use crate::math::lanes::{F, load, splat};
-use crate::math::scalar::exp;
-use crate::scene::{Air, Smoke, Voxels};
+use crate::scene::{Rules, Voxels};
 use std::mem::swap;
 
 /// Lanes of a cell's values; the first three are the velocity.
 pub const DENSITY: usize = 3;
 /// Temperature, see [`DENSITY`].
 pub const HEAT: usize = 4;
-/// Share of the light of the first lamp that comes through, see [`DENSITY`]; that of the second follows.
-pub const LIGHT: usize = 5;
-/// 1, or 0 for a solid cell, see [`DENSITY`].
-pub const OPEN: usize = 7;
+/// Share of the light of the first lamp that is lost on its way, see [`DENSITY`]; that of the second follows.
+pub const DARK: usize = 5;
+/// 1 for a solid cell, see [`DENSITY`].
+pub const SOLID: usize = 7;
 
 /// Greatest velocity along an axis, cells per step.
 pub const FASTEST: f32 = 4.0;
@@ -42,9 +41,6 @@ const SHARE: f32 = 0.99 / 6.0;
 /// Cells that light goes on by at a time.
 const REACH: f32 = 2.0;
 
-/// Still air, lit, in an open cell.
-const STILL: Eight = [0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
-
 /// All that moves.
 #[derive(Default)]
 pub struct State {
@@ -52,36 +48,28 @@ pub struct State {
     pub cells: Vec<Eight>,
     /// Those of the step before.
     pub before: Vec<Eight>,
-    /// Pressure, eight cells to an element.
+    /// Pressure, eight cells to an element, as in those that follow: most of their memory is never touched.
     pub pressure: Vec<Eight>,
-    /// Room for the next sweep's.
     next: Vec<Eight>,
     divergence: Vec<Eight>,
 }
 
 impl State {
     /// Still air.
-    pub fn new(smoke: &Smoke) -> Self {
-        let cells = vec![STILL; Grid { size: smoke.size }.len()];
-        let pressure = vec![[0.0; 8]; cells.len() / 8];
-        State { before: cells.clone(), cells, next: pressure.clone(), divergence: pressure.clone(), pressure }
+    pub fn new(smoke: &Rules) -> Self {
+        let field = || vec![[0.0; 8]; Grid { size: smoke.size }.len()];
+        State { cells: field(), before: field(), pressure: field(), next: field(), divergence: field() }
     }
 
     /// Takes the step with this number.
     #[inline(never)]
-    pub fn step(&mut self, smoke: &Smoke, number: u32, counters: &mut Counters) {
+    pub fn step(&mut self, smoke: &Rules, number: u32, counters: &mut Counters) {
         counters.add(Counter::SmokeCells, smoke.size.iter().product());
         let grid = Grid { size: smoke.size };
         let steps = grid.steps();
         let figure = &(smoke.figure)(number);
         let air = &smoke.air;
-        let rate = |loss: f32| exp(-loss * Air::SECONDS);
-        let (drag, fade, cool) = (rate(air.drag), rate(air.fade), rate(air.cool));
-        let keep = F::new([drag, drag, drag, fade, cool, 0.0, 0.0, 0.0]);
-        let pace = splat(Air::SECONDS * Air::SECONDS / smoke.cell);
-        let (wind, lift) = (lanes(air.wind.into()) * pace, lanes([0.0, air.lift, 0.0]) * pace);
         let most = F::new([FASTEST, FASTEST, FASTEST, f32::MAX, f32::MAX, 0.0, 0.0, 0.0]);
-        let source = lanes([-FASTEST; 3]) + F::new([0.0, 0.0, 0.0, air.density, air.heat, 0.0, 0.0, 0.0]);
         // From places to the figure's cells.
         let scale = splat(smoke.cell / figure.cell);
         let shift = lanes(((smoke.lo - 0.5 * smoke.cell - figure.lo) / figure.cell).into());
@@ -102,8 +90,10 @@ impl State {
             let [x, y, z, ..] = (way * way).to_array();
             let nearer = at + way * splat(REACH / (x + y + z).sqrt());
             let taken = old.as_array()[DENSITY] * thickness;
-            let light =
-                grid.sample(cells, nearer).as_array()[LIGHT + lamp] / (1.0 + taken + 0.5 * taken * taken);
+            let came = grid.sample(cells, nearer).as_array()[DARK + lamp];
+            // 1 - (1 - came) exp(-taken), nearly.
+            let taken = taken + 0.5 * taken * taken;
+            let dark = (came + taken) / (1.0 + taken);
             let mut new = F::ZERO;
             if !solid && (kind != Voxels::EMPTY || ((old * most).simd_ne(F::ZERO)).any()) {
                 let from = at - old;
@@ -118,18 +108,18 @@ impl State {
                     high = high.fast_max(a).fast_max(b);
                     bend += (a + b - (old + old)) * splat(halves.as_array()[axis]);
                 }
-                new = (new - bend).fast_max(low).fast_min(high) * keep;
+                new = (new - bend).fast_max(low).fast_min(high) * F::new(air.keep);
                 let [.., density, heat, _, _, _] = new.to_array();
-                new += wind * splat(density) + lift * splat(heat);
+                new += F::new(air.by_density) * splat(density) + F::new(air.by_heat) * splat(heat);
                 if kind != Voxels::EMPTY {
-                    new = new.fast_max(source);
+                    new = new.fast_max(F::new(air.source));
                 }
                 new = quiet(new.fast_max(-most).fast_min(most));
             }
             *out = new.to_array();
-            out[LIGHT..OPEN].copy_from_slice(&old.as_array()[LIGHT..OPEN]);
-            out[LIGHT + lamp] = light;
-            out[OPEN] = f32::from(!solid);
+            out[DARK..SOLID].copy_from_slice(&old.as_array()[DARK..SOLID]);
+            out[DARK + lamp] = dark;
+            out[SOLID] = f32::from(solid);
         });
         swap(&mut self.cells, &mut self.before);
 
@@ -156,10 +146,11 @@ impl State {
         }
         let pressure = self.pressure.as_flattened();
         grid.each(&mut self.cells, 1, &|_, i, out| {
-            if out[OPEN] > 0.0 {
-                let [x, y, z] = steps.map(|step| 0.5 * (pressure[i + step] - pressure[i - step]));
-                *out = quiet(F::new(*out) - lanes([x, y, z])).to_array();
+            let mut slope = [0.0; 3];
+            for (slope, step) in slope.iter_mut().zip(steps) {
+                *slope = 0.5 * (1.0 - out[SOLID]) * (pressure[i + step] - pressure[i - step]);
             }
+            *out = quiet(F::new(*out) - lanes(slope)).to_array();
         });
     }
 }

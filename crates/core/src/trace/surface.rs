@@ -243,9 +243,11 @@ pub fn surface(scene: &Scene, quality: &Quality, rays: &Rays8, t: F, id: F, spre
             *lane = mask.select(splat(value), *lane);
         }
         if features::VOXELS {
-            let colours = [Channel::Colour, Channel::Emission].map(|channel| channel as usize);
-            for i in colours.into_iter().flat_map(|first| first..first + 3) {
-                s.material[i] *= mask.select(shade, F::ONE);
+            let factor = mask.select(shade, F::ONE);
+            for first in [Channel::Colour, Channel::Emission] {
+                for lane in s.material[first as usize..].iter_mut().take(3) {
+                    *lane *= factor;
+                }
             }
         }
         burn(material, mask, &mut s);
