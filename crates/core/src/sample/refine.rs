@@ -172,9 +172,11 @@ impl Known<'_> {
         self.all(|s, first| s.signature() == first.signature())
     }
 
-    /// Whether what the samples saw differs visibly.
+    /// Whether what the samples saw differs visibly. A smooth mesh is one surface that may stand before
+    /// itself.
     fn is_edge(&self, stage: &Stage) -> bool {
-        let alike = self.same_surface() && self.same_signature();
+        let folds = features::SMOOTH && self.samples[0].is_of_smooth_mesh(stage);
+        let alike = !folds && self.same_surface() && self.same_signature();
         !alike && !self.agree_within(2.0 * stage.quality.tolerance)
     }
 
