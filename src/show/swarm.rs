@@ -7,7 +7,7 @@
 use super::facets::{self, BAY, Dice, SIDE, Triangles};
 use super::paint::{degrees, key, seconds, surface, swing, times, v};
 use super::score;
-use super::still::{Panel, Still};
+use super::still::{Lamp, Panel, Still};
 use glam::{Mat3, Vec3};
 use luc_core::math::hash::{hash2, unit};
 use luc_core::math::scalar::{cos, sin, sin_cos};
@@ -81,7 +81,7 @@ fn height(x: f32, z: f32) -> f32 {
 }
 
 /// Cells of the hills' net each way.
-const CELLS: usize = 160;
+const CELLS: usize = 80;
 
 /// The hills as a net of triangles with smooth normals, finer towards the viewer.
 fn hills() -> Mesh {
@@ -176,18 +176,16 @@ static STILL: Still = Still {
         surface(v(0.12, 0.1, 0.17), 0.42, 0.35),
         surface(v(0.12, 0.1, 0.17), 0.42, 0.35),
     ],
+    lights: &[
+        // Goes with the camera.
+        Lamp { position: v(16.0, 9.0, 4.0), colour: times(v(0.5, 0.16, 0.55), 240.0), spot: None },
+    ],
     panels: &[
         Panel {
             centre: v(-30.0, 30.0, -50.0),
             target: v(0.0, 0.0, -10.0),
             size: [16.0, 16.0],
             radiance: times(v(0.36, 0.3, 1.0), 32.33),
-        },
-        Panel {
-            centre: v(24.0, 16.0, 16.0),
-            target: v(4.0, 2.0, -10.0),
-            size: [10.0, 10.0],
-            radiance: times(v(0.5, 0.16, 0.55), 9.0),
         },
     ],
     shading: Shading::Ggx,
@@ -220,7 +218,9 @@ pub fn scene(frame: u64) -> Scene {
     let way = back / 3.0;
     let target = v(10.4, 3.4, -32.0).lerp(v(1.2, 3.0, -10.0), way);
     s.camera = Camera { position, target, roll: degrees(-1.5), fov: degrees(60.0 - 12.0 * way) };
+    s.lights[0].position += position;
     s.meshes = land();
+    s.soft = true;
     s.light_count = track(&COUNT, t);
     // The corners are about equally far from each other, so the way runs evenly in them.
     let corners = (PATH.len() - 3) as f32;

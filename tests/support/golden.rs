@@ -77,7 +77,7 @@ pub const FINGERPRINTS: [Frame; 28] = [
 
 /// Whether a part is in the 64 kB file too.
 pub fn in_every_build(part: &str) -> bool {
-    part != "smoke"
+    !matches!(part, "smoke" | "swarm")
 }
 
 /// Part and local frame of those whose value is kept for all builds, in `values.txt`.

@@ -26,6 +26,8 @@ pub const ENDLESS: bool = cfg!(feature = "endless");
 pub const BOUNCES: bool = cfg!(feature = "bounces");
 /// Mirrors of rough surfaces by several rays.
 pub const ROUGH: bool = cfg!(feature = "rough");
+/// Shadows of shining rectangles by several rays.
+pub const SOFT_SHADOWS: bool = cfg!(feature = "soft-shadows");
 /// Small lights in great number.
 pub const POINTS: bool = cfg!(feature = "points");
 /// Triangle meshes.
@@ -43,7 +45,7 @@ pub const BRICK: bool = cfg!(feature = "brick");
 pub const SCRATCHES: bool = cfg!(feature = "scratches");
 
 /// Each feature with the counter that shows it at work.
-pub const ALL: [(&str, Counter); 17] = [
+pub const ALL: [(&str, Counter); 18] = [
     ("ggx", Counter::Ggx),
     ("bumps", Counter::Bumps),
     ("fields", Counter::FieldSteps),
@@ -54,6 +56,7 @@ pub const ALL: [(&str, Counter); 17] = [
     ("endless", Counter::EndlessTests),
     ("bounces", Counter::ScatterRays),
     ("rough", Counter::RoughRays),
+    ("soft-shadows", Counter::SoftShadowRays),
     ("points", Counter::PointLights),
     ("meshes", Counter::NodeVisits),
     ("smooth", Counter::SmoothFacets),

@@ -53,6 +53,7 @@ fn finish_row(
     let fy = ((y as f32 + 0.5) * 2.0 - h) / h;
     let wipe = (stage.scene.overlay * w) as usize;
     let seed = splat_u(hash2(n as u32, 0));
+    let mut paint = Vec3::ZERO;
     for (base, out) in row.chunks_mut(8).enumerate() {
         let at = (y % TILE) * TILE + base * 8;
         let [r, g, b] = &tile.rgb;
@@ -69,12 +70,16 @@ fn finish_row(
                 colour.set_lane(lane, painted);
             }
         }
-        if let (true, Some(points)) = (features::POINTS && stage.scene.light_count > 0.0, &stage.points) {
-            let at = stage.on_screen(x as f32 + 4.0, y as f32 + 0.5);
-            let depths = tile.depths((base * 8, y % TILE), stage.quality.light_tile as usize);
-            let count = points.count(&stage.scene.points, at.x, -at.y, depths);
-            let paint = V3::splat(light_count(count));
-            colour = colour + (paint - colour) * splat(stage.scene.light_count);
+        if features::POINTS && stage.scene.light_count > 0.0 {
+            let side = stage.quality.light_tile as usize;
+            if base == 0 || x % side < 8 {
+                let at = stage.on_screen(x as f32 + 4.0, y as f32 + 0.5);
+                let depths = tile.depths((base * 8, y % TILE), side);
+                let points = stage.points.as_ref();
+                let count = points.map_or(0, |p| p.count(&stage.scene.points, at.x, -at.y, depths));
+                paint = light_count(count);
+            }
+            colour = colour + (V3::splat(paint) - colour) * splat(stage.scene.light_count);
         }
         if grade.vignette > 0.0 {
             let fx = (splat(x as f32 + 0.5) + RAMP) * splat(2.0 / w) - F::ONE;

@@ -297,7 +297,9 @@ impl Surroundings {
             let position = stage.lamps[lamp].position;
             let faces = known.samples[..4].iter().any(|s| s.normal().dot(position - s.point()) > 0.0);
             let lit = faces && known.samples[..4].iter().all(|s| s.code(lamp) != BLOCKED);
-            if (self.shadows[lamp] == 0 && meshes.is_empty()) || !lit || !stage.lamps[lamp].lights(material) {
+            // Soft shadows rest on the samples alone.
+            let soft = stage.shadow_rays(lamp) > 1;
+            if (self.shadows[lamp] == 0 && meshes.is_empty()) || soft || !lit || !stage.lamps[lamp].lights(material) {
                 continue;
             }
             let to = points.map(|p| p - position);

@@ -19,8 +19,12 @@ use glam::Vec3;
 /// Lamps that may cast shadows; those after them light without.
 pub const MAX_LAMPS: usize = 8;
 
-/// Visibility codes of a packet, per lamp: see [`occlusion`].
+/// Visibility codes of a packet, per lamp: see [`occlusion`]. Between 0 and [`BLOCKED`] stands the
+/// hidden share of a shining rectangle, by which its light is less.
 pub type Codes = [F; MAX_LAMPS];
+
+/// Rays of a soft shadow that must agree, for the others to be spared.
+const AGREE: u32 = 4;
 
 /// Where the visibility of the lamps comes from.
 pub enum Visibility<'a> {
@@ -157,21 +161,40 @@ pub fn direct(
         let wanted = active & plain & n_l.simd_gt(zero) & s.facing.dot(l).simd_gt(zero) & reach.simd_gt(zero);
         if let (Some(code), Visibility::Trace(candidates)) = (codes.get_mut(k), &visibility) {
             *code = zero;
-            if (candidates[k] != 0 || !stage.scene.meshes.is_empty()) && wanted.any() {
-                counters.add(Counter::ShadowRays, wanted.to_bitmask().count_ones() as usize);
-                let rays = Rays8 { origin: start, direction: to_lamp };
+            let samples = stage.shadow_rays(k);
+            // Candidates are the shapes that may hide the lamp's middle.
+            let candidates = if samples > 1 { u64::MAX } else { candidates[k] };
+            if (candidates != 0 || !stage.scene.meshes.is_empty()) && wanted.any() {
                 counters.watch.enter(Phase::Tracing);
-                let found = occlusion(
-                    stage.scene,
-                    &stage.quality,
-                    &stage.bits,
-                    &rays,
-                    wanted,
-                    candidates[k],
-                    counters,
-                );
+                let (mut hidden, mut open) = (zero, wanted);
+                for sample in 0..samples {
+                    if sample == AGREE {
+                        open &= hidden.simd_lt(zero) & hidden.simd_gt(splat(-(AGREE as f32)));
+                    }
+                    if !open.any() {
+                        break;
+                    }
+                    counters.add(Counter::ShadowRays, open.to_bitmask().count_ones() as usize);
+                    counters.add(Counter::SoftShadowRays, usize::from(samples > 1));
+                    let to_point = V3::splat(lamp.position + lamp.aside(sample)) - start;
+                    let rays = Rays8 { origin: start, direction: to_point };
+                    let found = occlusion(
+                        stage.scene,
+                        &stage.quality,
+                        &stage.bits,
+                        &rays,
+                        open,
+                        candidates,
+                        counters,
+                    );
+                    hidden += found.fast_min(zero) & open;
+                    *code = code.fast_max(found & open);
+                }
+                // Of lanes that agreed none or all of the rays are hidden.
+                let settled = hidden.simd_lt(zero) & !open;
+                let share = settled.select(splat(BLOCKED), hidden * splat(1.0 / samples as f32));
+                *code = share.simd_lt(zero).select(share, *code);
                 counters.watch.enter(Phase::Shading);
-                *code = found & wanted;
             }
         }
         let code = codes.get(k).copied().unwrap_or(zero);
@@ -180,7 +203,8 @@ pub fn direct(
             continue;
         }
         counters.add(Counter::LightEvaluations, 8);
-        let mut light = tinted(stage, lamp, code) * (lit & (reach / d2));
+        let open = F::ONE + code.fast_min(zero);
+        let mut light = tinted(stage, lamp, code) * (lit & (reach * open / d2));
         if let Some(volume) = stage.volume.filter(|_| features::SMOKE) {
             light = light * volume.shadow(k, start, to_lamp);
         }

@@ -87,13 +87,16 @@ impl Points {
 
     /// How many lights reach the surfaces of a tile, [`Self::tile`], that lie between two depths.
     pub fn count(&self, lights: &[PointLight], x: f32, y: f32, depths: [f32; 2]) -> u32 {
-        let mask = self.tile(x, y).unwrap_or_default();
-        let reaches = |&(i, light): &(usize, &PointLight)| {
-            let z = self.view.local(light.position).z;
-            let meets = z + light.radius > depths[0] && z - light.radius < depths[1];
-            mask[i / 64] >> (i % 64) & 1 == 1 && meets
-        };
-        lights.iter().take(MAX_POINTS).enumerate().filter(reaches).count() as u32
+        let mut count = 0;
+        for (lights, mut bits) in lights.chunks(64).zip(self.tile(x, y).unwrap_or_default()) {
+            while bits != 0 {
+                let light = &lights[bits.trailing_zeros() as usize];
+                let z = self.view.local(light.position).z;
+                count += u32::from(z + light.radius > depths[0] && z - light.radius < depths[1]);
+                bits &= bits - 1;
+            }
+        }
+        count
     }
 
     /// Calls `light` with the index of each light whose ball meets the box around the points in
