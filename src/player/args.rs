@@ -389,7 +389,10 @@ mod tests {
             (&["--frame=3"], "'--frame=3' is not an option"),
             (&["-o", "a.png"], "-o needs --frame"),
             (&["--view", "normal"], "--view needs --frame"),
-            (&["--frame", "1", "--view", "x"], "one of normal distance albedo sampling lights steps, not 'x'"),
+            (
+                &["--frame", "1", "--view", "x"],
+                "one of normal distance albedo sampling lights steps, not 'x'",
+            ),
             (&["--frame", "1", "--view", "normal", "--average", "4"], "--average is for light"),
             (&["--average", "4"], "--average needs --frame"),
             (&["--frame", "1", "--average", "0"], "--average wants a whole number from 1 to 1024, not '0'"),

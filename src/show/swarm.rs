@@ -16,8 +16,9 @@ use luc_core::scene::*;
 use luc_core::synth::track::{Strikes, pulse, strikes};
 use std::sync::{Arc, OnceLock};
 
-/// Strikes of the plucks.
+/// Strikes of the plucks, which run down the stream, and of the kick, with which all glows.
 const PLUCK: [Strikes; 10] = strikes(&score::SCORE, &score::SWARM, score::PLUCK);
+const KICK: [Strikes; 10] = strikes(&score::SCORE, &score::SWARM, score::KICK);
 
 /// Corners of the stream, for [`curve`].
 const PATH: [Vec3; 12] = [
@@ -25,9 +26,9 @@ const PATH: [Vec3; 12] = [
     v(-34.0, 10.0, -62.0),
     v(-17.0, 5.0, -42.0),
     v(0.0, 3.6, -40.0),
-    v(10.5, 3.6, -35.0),
-    v(9.6, 2.2, -25.0),
-    v(7.2, 1.6, -14.5),
+    v(10.5, 2.8, -35.0),
+    v(9.6, 0.7, -25.0),
+    v(7.2, 0.8, -14.5),
     v(3.6, 1.9, -6.5),
     v(0.2, 1.7, 0.0),
     v(-3.2, 1.5, 5.0),
@@ -37,10 +38,10 @@ const PATH: [Vec3; 12] = [
 
 /// Corners of the camera's flight.
 const FLIGHT: [Vec3; 6] = [
-    v(8.0, 2.0, -20.0),
-    v(7.3, 2.0, -15.0),
-    v(5.9, 2.5, -6.0),
-    v(2.2, 3.1, 5.0),
+    v(8.0, 2.6, -20.0),
+    v(7.3, 2.6, -15.0),
+    v(5.9, 2.9, -6.0),
+    v(2.2, 3.3, 5.0),
     v(-3.5, 3.6, 15.0),
     v(-12.0, 4.0, 24.0),
 ];
@@ -61,7 +62,7 @@ const COUNT: [Key; 4] = [
 ];
 
 /// Corners of its flight that the camera has passed, over seconds.
-const BACK: [Key; 2] = [key(-1.0, 0.0, Ease::Smooth), key(16.0, 2.999, Ease::Step)];
+const BACK: [Key; 2] = [key(-2.0, 0.0, Ease::Smooth), key(16.0, 2.999, Ease::Step)];
 
 /// Point of a Catmull-Rom curve `x` corners behind its second one; it doesn't reach the first and the last.
 #[inline(never)]
@@ -111,7 +112,13 @@ fn shards(out: &mut Triangles, dice: &mut Dice) {
         let (x, z) = (dice.roll(-14.0, 16.0), dice.roll(-25.0, 9.0));
         let size = 0.3 + 1.1 * dice.roll(0.0, 1.0) * dice.roll(0.0, 1.0);
         let axis = v(dice.roll(-0.6, 0.6), 1.5, dice.roll(-0.6, 0.6)) * size;
-        facets::crystal(out, v(x, height(x, z) - 0.1, z), axis, [0.16 * size, 0.7 * size], dice.roll(0.0, 1.0));
+        facets::crystal(
+            out,
+            v(x, height(x, z) - 0.1, z),
+            axis,
+            [0.16 * size, 0.7 * size],
+            dice.roll(0.0, 1.0),
+        );
     }
 }
 
@@ -137,7 +144,11 @@ fn meshes() -> &'static [Arc<Mesh>] {
         let mut made = vec![Arc::new(hills())];
         for k in 0..PIERS + 1 {
             let mut triangles = Vec::new();
-            if k == 0 { shards(&mut triangles, &mut dice) } else { pier(&mut triangles, &mut dice) }
+            if k == 0 {
+                shards(&mut triangles, &mut dice)
+            } else {
+                pier(&mut triangles, &mut dice)
+            }
             made.push(Arc::new(Mesh::flat(triangles)));
         }
         made
@@ -170,31 +181,26 @@ static STILL: Still = Still {
         Stop { y: 0.55, colour: v(0.014, 0.01, 0.055) },
         Stop { y: 1.0, colour: v(0.006, 0.005, 0.03) },
     ],
-    glows: &[Glow { direction: v(-0.55, 0.06, -1.0), colour: v(0.34, 0.13, 0.3), sharpness: 10.0 }],
+    glows: &[Glow { direction: v(-0.55, 0.06, -1.0), colour: v(0.28, 0.1, 0.26), sharpness: 10.0 }],
     materials: &[
         surface(v(0.034, 0.028, 0.06), 0.55, 0.0),
         surface(v(0.12, 0.1, 0.17), 0.42, 0.35),
         surface(v(0.12, 0.1, 0.17), 0.42, 0.35),
     ],
-    lights: &[
-        // Goes with the camera.
-        Lamp { position: v(16.0, 9.0, 4.0), colour: times(v(0.5, 0.16, 0.55), 240.0), spot: None },
-    ],
-    panels: &[
-        Panel {
-            centre: v(-30.0, 30.0, -50.0),
-            target: v(0.0, 0.0, -10.0),
-            size: [16.0, 16.0],
-            radiance: times(v(0.36, 0.3, 1.0), 32.33),
-        },
-    ],
+    lights: &[Lamp { position: v(-50.0, 40.0, 90.0), colour: times(v(0.55, 0.2, 0.6), 5000.0), spot: None }],
+    panels: &[Panel {
+        centre: v(-30.0, 30.0, -50.0),
+        target: v(0.0, 0.0, -10.0),
+        size: [16.0, 16.0],
+        radiance: times(v(0.36, 0.3, 1.0), 32.33),
+    }],
     shading: Shading::Ggx,
     ambient: [v(0.03, 0.012, 0.05), v(0.04, 0.02, 0.09)],
     fog: Some(Fog {
-        density: 0.024,
+        density: 0.03,
         colour: v(0.12, 0.045, 0.19),
         lo: v(-200.0, -4.0, -200.0),
-        hi: v(200.0, 2.4, 4.0),
+        hi: v(200.0, 1.4, 4.0),
     }),
     grade: Grade {
         bloom_threshold: 0.9,
@@ -216,9 +222,9 @@ pub fn scene(frame: u64) -> Scene {
     let back = track(&BACK, t);
     let position = curve(&FLIGHT, back);
     let way = back / 3.0;
-    let target = v(10.4, 3.4, -32.0).lerp(v(1.2, 3.0, -10.0), way);
+    let target = v(10.4, 3.2, -32.0).lerp(v(1.2, 3.0, -10.0), way);
     s.camera = Camera { position, target, roll: degrees(-1.5), fov: degrees(60.0 - 12.0 * way) };
-    s.lights[0].position += position;
+    s.grade.bloom += 0.4 * pulse(&KICK, frame, 5.0);
     s.meshes = land();
     s.soft = true;
     s.light_count = track(&COUNT, t);
@@ -236,7 +242,7 @@ pub fn scene(frame: u64) -> Scene {
         position.y = position.y.max(height(position.x, position.z) + 0.4);
         let kind = i as usize % 3;
         // The plucks reach the fireflies one after the other.
-        let wave = 0.8 + 0.4 * pulse(&PLUCK, frame.saturating_sub((6.0 * x) as u64), 6.0);
+        let wave = 0.7 + 0.7 * pulse(&PLUCK, frame.saturating_sub((6.0 * x) as u64), 6.0);
         let strength = if position.z < -20.0 { 0.8 } else { 0.6 };
         s.points.push(PointLight { position, radius: 3.4, colour: LIGHT[kind] * (strength * wave) });
         // Dim at both ends of the stream, and close to the eye.

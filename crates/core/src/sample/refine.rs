@@ -299,7 +299,11 @@ impl Surroundings {
             let lit = faces && known.samples[..4].iter().all(|s| s.code(lamp) != BLOCKED);
             // Soft shadows rest on the samples alone.
             let soft = stage.shadow_rays(lamp) > 1;
-            if (self.shadows[lamp] == 0 && meshes.is_empty()) || soft || !lit || !stage.lamps[lamp].lights(material) {
+            if (self.shadows[lamp] == 0 && meshes.is_empty())
+                || soft
+                || !lit
+                || !stage.lamps[lamp].lights(material)
+            {
                 continue;
             }
             let to = points.map(|p| p - position);
