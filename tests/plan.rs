@@ -6,7 +6,7 @@ use luc_core::features;
 use luc_core::plan::{Plan, warnings};
 use luc_core::quality::Quality;
 use luc_core::render::Renderer;
-use luc_core::scene::{Material, Scene, Sphere};
+use luc_core::scene::{Effect, Kind, Material, Scene, Sphere};
 
 const SIZE: (u32, u32) = (320, 180);
 
@@ -79,6 +79,59 @@ fn a_scene_of_one_ball_calls_for_little() {
         assert!(!calls.names(call), "{call:?}");
     }
     assert!(calls.names(Counter::SphereTests));
+}
+
+#[test]
+fn each_effect_runs_as_often_as_it_is_called_for() {
+    let colour = glam::Vec3::new(1.0, 0.5, 0.2);
+    let kinds = [
+        Kind::Contrast(1.5),
+        Kind::Tint { colour, strength: 0.5 },
+        Kind::Bloom { threshold: 0.5, intensity: 0.5 },
+        Kind::WideBloom { threshold: 0.5, intensity: 0.5, octaves: 3 },
+        Kind::Sharpness(1.0),
+        Kind::Levels(glam::Vec3::splat(4.0)),
+        Kind::Fringes(0.01),
+        Kind::Edges { strength: 2.0, colour },
+        Kind::Lighten(-0.5),
+        Kind::Tube { base: 0.5, glow: 0.5, radius: 1.0 },
+        Kind::Grain(0.1),
+    ];
+    let quality = Quality::named("low").unwrap();
+    let (mut renderer, mut pixels) = (Renderer::default(), vec![0; 96 * 54]);
+    let mut draw = |effects: Vec<Effect>| {
+        let scene = Scene { effects, ..Scene::default() };
+        renderer.frame(&scene, 0, (96, 54), &quality, &mut pixels);
+        (renderer.counters, Plan::of(&scene, &quality), pixels.clone())
+    };
+    let (bare, ..) = draw(Vec::new());
+    for kind in kinds {
+        for multipass in [1, 3] {
+            let (counters, plan, _) = draw(vec![Effect { multipass, amount: 0.5, ..Effect::new(kind) }]);
+            for (counter, words) in Counter::ALL {
+                let passes = if counter == kind.counter() { multipass.into() } else { 0 };
+                assert_eq!(counters.get(counter), bare.get(counter) + passes, "{kind:?}: {words}");
+            }
+            assert!(plan.names(kind.counter()), "{kind:?}");
+        }
+        let (counters, plan, _) = draw(vec![Effect { amount: 0.0, ..Effect::new(kind) }]);
+        assert_eq!(counters, bare, "{kind:?} of no amount");
+        assert!(!plan.names(kind.counter()), "{kind:?} of no amount");
+    }
+}
+
+#[test]
+fn an_effect_that_changes_nothing_gives_the_bytes_of_the_picture_without_it() {
+    let part = show::PARTS.iter().find(|part| part.name == "facets").expect("a part of the show");
+    let (quality, size) = (Quality::named("medium").unwrap(), (333, 187));
+    let draw = |effects: Vec<Effect>| {
+        let mut pixels = vec![0; (size.0 * size.1) as usize];
+        Renderer::default().frame(&Scene { effects, ..(part.scene)(640) }, 640, size, &quality, &mut pixels);
+        pixels
+    };
+    // The straight way from tiles to pixels, and the way by the chain.
+    let identity = Effect { amount: 1.0, ..Effect::new(Kind::Lighten(0.0)) };
+    assert!(draw(vec![identity]) == draw(Vec::new()));
 }
 
 #[test]

@@ -67,6 +67,17 @@ counters! {
     Filled "pixels filled",
     EdgeSamples "edge samples",
     BloomPasses "bloom passes",
+    Contrast "passes of contrast",
+    Tint "passes of tint",
+    Bloom "passes of narrow bloom",
+    WideBloom "passes of wide bloom",
+    Sharpness "passes of sharpness",
+    Levels "passes of colour mapping",
+    Fringes "passes of chromatic aberration",
+    Edges "passes of edge detection",
+    Lighten "passes of lightening",
+    Tube "passes of the tube",
+    Grain "passes of grain",
     OverlayPixels "overlay pixels",
 }
 

@@ -44,8 +44,33 @@ pub const BRICK: bool = cfg!(feature = "brick");
 /// See [`crate::scene::Pattern::Scratches`].
 pub const SCRATCHES: bool = cfg!(feature = "scratches");
 
+/// The chain of effects, with at least one of them.
+pub const EFFECTS: bool = cfg!(feature = "effects");
+/// See [`crate::scene::Kind::Contrast`].
+pub const EFFECT_CONTRAST: bool = cfg!(feature = "effect-contrast");
+/// See [`crate::scene::Kind::Tint`].
+pub const EFFECT_TINT: bool = cfg!(feature = "effect-tint");
+/// See [`crate::scene::Kind::Bloom`].
+pub const EFFECT_BLOOM: bool = cfg!(feature = "effect-bloom");
+/// See [`crate::scene::Kind::WideBloom`].
+pub const EFFECT_WIDE_BLOOM: bool = cfg!(feature = "effect-wide-bloom");
+/// See [`crate::scene::Kind::Sharpness`].
+pub const EFFECT_SHARPNESS: bool = cfg!(feature = "effect-sharpness");
+/// See [`crate::scene::Kind::Levels`].
+pub const EFFECT_LEVELS: bool = cfg!(feature = "effect-levels");
+/// See [`crate::scene::Kind::Fringes`].
+pub const EFFECT_FRINGES: bool = cfg!(feature = "effect-fringes");
+/// See [`crate::scene::Kind::Edges`].
+pub const EFFECT_EDGES: bool = cfg!(feature = "effect-edges");
+/// See [`crate::scene::Kind::Lighten`].
+pub const EFFECT_LIGHTEN: bool = cfg!(feature = "effect-lighten");
+/// See [`crate::scene::Kind::Tube`].
+pub const EFFECT_TUBE: bool = cfg!(feature = "effect-tube");
+/// See [`crate::scene::Kind::Grain`].
+pub const EFFECT_GRAIN: bool = cfg!(feature = "effect-grain");
+
 /// Each feature with the counter that shows it at work.
-pub const ALL: [(&str, Counter); 18] = [
+pub const ALL: [(&str, Counter); 29] = [
     ("ggx", Counter::Ggx),
     ("bumps", Counter::Bumps),
     ("fields", Counter::FieldSteps),
@@ -64,4 +89,15 @@ pub const ALL: [(&str, Counter); 18] = [
     ("stripes", Counter::Stripes),
     ("brick", Counter::Brick),
     ("scratches", Counter::Scratches),
+    ("effect-contrast", Counter::Contrast),
+    ("effect-tint", Counter::Tint),
+    ("effect-bloom", Counter::Bloom),
+    ("effect-wide-bloom", Counter::WideBloom),
+    ("effect-sharpness", Counter::Sharpness),
+    ("effect-levels", Counter::Levels),
+    ("effect-fringes", Counter::Fringes),
+    ("effect-edges", Counter::Edges),
+    ("effect-lighten", Counter::Lighten),
+    ("effect-tube", Counter::Tube),
+    ("effect-grain", Counter::Grain),
 ];

@@ -90,7 +90,8 @@ impl Plan {
             (Counter::BloomPasses, scene.grade.bloom > 0.0),
             (Counter::OverlayPixels, scene.overlay > 0.0),
         ];
-        Plan(calls.into_iter().filter_map(|(call, called)| called.then_some(call)).collect())
+        let effects = scene.effects.iter().filter(|effect| effect.runs()).map(|effect| effect.kind.counter());
+        Plan(calls.into_iter().filter_map(|(call, called)| called.then_some(call)).chain(effects).collect())
     }
 
     /// Whether the frame calls for the machinery behind a counter.

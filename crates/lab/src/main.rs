@@ -8,6 +8,7 @@ mod accuracy;
 mod args;
 mod bench;
 mod capture;
+mod effects;
 mod figures;
 mod font;
 mod lights;
@@ -31,7 +32,7 @@ use std::process::exit;
 /// A command: its name, what follows it, what it does, and the function.
 type Command = (&'static str, &'static str, &'static str, fn(&[String]) -> Result<(), String>);
 
-const COMMANDS: [Command; 11] = [
+const COMMANDS: [Command; 12] = [
     (
         "accuracy",
         "[--quick]",
@@ -46,6 +47,7 @@ const COMMANDS: [Command; 11] = [
     ),
     ("view", "[--part NAME] [--from N]", "the show in a window with the keys of an editor", view::run),
     ("sheet", "[--part NAME]", "contact sheets in target/sheets", sheet::run),
+    ("effects", "[-o FILE]", "each effect on a frame of the show, as one page", effects::run),
     ("capture", "[-o FILE] [--shard I/N]", "frames as y4m, to a file or standard output", capture::run),
     ("stats", "[FRAME] [QUALITY] [WxH]", "counters, time and error of one frame", stats::run),
     ("sound", "[FILE.wav]...", "loudness, peaks and spectrum of the tune, beside those of files", sound::run),

@@ -82,7 +82,7 @@ pub fn run(args: &[String]) -> Result<(), String> {
 }
 
 /// Pictures of one size in rows of `across`.
-fn sheet(pictures: &[Picture], across: usize, size: (u32, u32)) -> Picture {
+pub fn sheet(pictures: &[Picture], across: usize, size: (u32, u32)) -> Picture {
     let across = across.min(pictures.len()).max(1);
     let (w, h) = (size.0 as usize + GAP, size.1 as usize + GAP);
     let rows = pictures.len().div_ceil(across);

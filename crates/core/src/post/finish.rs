@@ -1,15 +1,21 @@
-//! The last pass: bloom, display curve, vignette, grain, sampling overlay, 0RGB.
+//! The last pass: bloom, display curve, sampling overlay, then the effects, if the scene has any, then
+//! vignette, grain, 0RGB.
 //!
 //! Vignette: 1 - V r^2.4 with r² = (x² + y²) / 2, x and y from -1 to 1; the power is a cubic in r²,
 //! within 0.004. Grain: a hash of pixel and
 //! frame, which also hides banding. Pixels are quantised by floor(255 v + 1/2).
 
-use super::bloom::{Bloom, Glow};
+use super::bloom::Bloom;
+use super::chain::Chain;
+use super::effect::noise;
+use super::picture::Picture;
 use crate::counters::{Counter, Counters};
-use crate::math::hash::{hash2, mix_x8, unit_x8};
-use crate::math::lanes::{F, LANE_INDEX, RAMP, V3, load, splat, splat_u};
+use crate::math::hash::hash2;
+use crate::math::lanes::{F, RAMP, V3, load, splat, splat_u};
 use crate::render::Stage;
 use crate::sample::{Kind, TILE, Tile};
+use crate::scene::Effect;
+use crate::shade::Points;
 use crate::study::Phase;
 use crate::{features, parallel};
 use glam::Vec3;
@@ -17,87 +23,95 @@ use glam::Vec3;
 /// Rows that are finished as one piece of work.
 const ROWS: usize = 16;
 
-/// Writes the tiles of frame `n` as 0RGB rows into `pixels`; returns what that took.
-pub fn finish(stage: &Stage, tiles: &[Tile], bloom: &mut Bloom, n: u64, pixels: &mut [u32]) -> Counters {
-    let width = stage.width as usize;
-    let across = width.div_ceil(TILE);
-    let mut counters = Counters::start(&stage.quality.study, Phase::Bloom);
-    let glow = bloom.glow(stage, tiles);
-    counters.watch.enter(Phase::Finishing);
-    counters.add(Counter::BloomPasses, glow.is_some() as usize);
-    let painted = (stage.scene.overlay * stage.width as f32) as usize;
-    counters.add(Counter::OverlayPixels, painted * stage.height as usize);
-    parallel::each(pixels.chunks_mut(width * ROWS), |strip, rows| {
-        for (row, y) in rows.chunks_mut(width).zip(strip * ROWS..) {
-            let tiles = &tiles[y / TILE * across..];
-            for (k, (tile, part)) in tiles.iter().zip(row.chunks_mut(TILE)).enumerate() {
-                finish_row(stage, tile, glow, (k * TILE, y), n, part);
-            }
-        }
-    });
-    counters.watch.stop();
-    counters
+/// What lives from frame to frame.
+#[derive(Default)]
+pub struct Post {
+    bloom: Bloom,
+    chain: Chain,
 }
 
-/// Finishes the row `y` of the picture within one tile, from pixel `x` on.
-fn finish_row(
-    stage: &Stage,
-    tile: &Tile,
-    glow: Option<&Glow>,
-    (x, y): (usize, usize),
-    n: u64,
-    row: &mut [u32],
-) {
+impl Post {
+    /// Writes the tiles of frame `n` as 0RGB rows into `pixels`; returns what that took.
+    pub fn finish(&mut self, stage: &Stage, tiles: &[Tile], n: u64, pixels: &mut [u32]) -> Counters {
+        let (width, height) = (stage.width as usize, stage.height as usize);
+        let mut counters = Counters::start(&stage.quality.study, Phase::Bloom);
+        let glow = self.bloom.glow(stage, tiles);
+        counters.watch.enter(Phase::Finishing);
+        counters.add(Counter::BloomPasses, glow.is_some() as usize);
+        let painted = (stage.scene.overlay * stage.width as f32) as usize;
+        counters.add(Counter::OverlayPixels, painted * height);
+        // Without effects the picture goes straight from the tiles to the pixels.
+        let effects = &stage.scene.effects;
+        let mut changed = None;
+        if features::EFFECTS && effects.iter().any(Effect::runs) {
+            self.chain.fill([width, height], &|x, y| develop(stage, tiles, glow, (x, y)));
+            self.chain.run(effects, n, &mut counters);
+            changed = Some(&self.chain.picture);
+        }
+        parallel::each(pixels.chunks_mut(width * ROWS), |strip, rows| {
+            for (row, y) in rows.chunks_mut(width).zip(strip * ROWS..) {
+                for (out, x) in row.chunks_mut(8).zip((0..).step_by(8)) {
+                    let colour = match changed {
+                        Some(picture) if features::EFFECTS => picture.near(x, y, 0, 0),
+                        _ => develop(stage, tiles, glow, (x, y)),
+                    };
+                    print(stage, colour, (x, y), n, out);
+                }
+            }
+        });
+        counters.watch.stop();
+        counters
+    }
+}
+
+/// Display values of eight pixels from (`x`, `y`) on.
+fn develop(stage: &Stage, tiles: &[Tile], glow: Option<&Picture>, (x, y): (usize, usize)) -> V3 {
+    let tile = &tiles[y / TILE * (stage.width as usize).div_ceil(TILE) + x / TILE];
+    let at = (y % TILE) * TILE + x % TILE;
+    let [r, g, b] = &tile.rgb;
+    let mut linear = V3 { x: load(&r[at..]), y: load(&g[at..]), z: load(&b[at..]) };
+    if let Some(glow) = glow {
+        linear += glow.light(x, y, glow.scale) * splat(1.0 / stage.scene.grade.exposure);
+    }
+    let mut colour = stage.display.map8(linear);
+
+    if x < (stage.scene.overlay * stage.width as f32) as usize {
+        for lane in 0..8 {
+            let painted = overlay(tile, (x % TILE + lane, y % TILE), colour.lane(lane));
+            colour.set_lane(lane, painted);
+        }
+    }
+    if features::POINTS && stage.scene.light_count > 0.0 {
+        let at = stage.on_screen(x as f32 + 4.0, y as f32 + 0.5);
+        let depths = tile.depths((x % TILE, y % TILE), stage.quality.light_tile as usize);
+        let count = |points: &Points| points.count(&stage.scene.points, at.x, -at.y, depths);
+        let count = stage.points.as_ref().map_or(0, count);
+        let paint = V3::splat(light_count(count));
+        colour = colour + (paint - colour) * splat(stage.scene.light_count);
+    }
+    colour
+}
+
+/// Vignette, grain and bytes of eight pixels from (`x`, `y`) on, or as many as `out` takes.
+fn print(stage: &Stage, mut colour: V3, (x, y): (usize, usize), n: u64, out: &mut [u32]) {
     let grade = &stage.scene.grade;
     let (w, h) = (stage.width as f32, stage.height as f32);
-    let fy = ((y as f32 + 0.5) * 2.0 - h) / h;
-    let wipe = (stage.scene.overlay * w) as usize;
-    let seed = splat_u(hash2(n as u32, 0));
-    let mut paint = Vec3::ZERO;
-    for (base, out) in row.chunks_mut(8).enumerate() {
-        let at = (y % TILE) * TILE + base * 8;
-        let [r, g, b] = &tile.rgb;
-        let mut linear = V3 { x: load(&r[at..]), y: load(&g[at..]), z: load(&b[at..]) };
-        let x = x + base * 8;
-        if let Some(glow) = glow {
-            linear += glow.light(x, y, glow.scale) * splat(1.0 / grade.exposure);
-        }
-        let mut colour = stage.display.map8(linear);
-
-        if x < wipe {
-            for lane in 0..8 {
-                let painted = overlay(tile, (base * 8 + lane, y % TILE), colour.lane(lane));
-                colour.set_lane(lane, painted);
-            }
-        }
-        if features::POINTS && stage.scene.light_count > 0.0 {
-            let side = stage.quality.light_tile as usize;
-            if base == 0 || x % side < 8 {
-                let at = stage.on_screen(x as f32 + 4.0, y as f32 + 0.5);
-                let depths = tile.depths((base * 8, y % TILE), side);
-                let points = stage.points.as_ref();
-                let count = points.map_or(0, |p| p.count(&stage.scene.points, at.x, -at.y, depths));
-                paint = light_count(count);
-            }
-            colour = colour + (V3::splat(paint) - colour) * splat(stage.scene.light_count);
-        }
-        if grade.vignette > 0.0 {
-            let fx = (splat(x as f32 + 0.5) + RAMP) * splat(2.0 / w) - F::ONE;
-            let r2 = (fx * fx + splat(fy * fy)) * splat(0.5);
-            let fall = r2 * (splat(0.5939) + r2 * (splat(0.6871) - r2 * splat(0.2849)));
-            colour = colour * (F::ONE - splat(grade.vignette) * fall);
-        }
-        let pixel = splat_u((y * stage.width as usize + x) as u32) + LANE_INDEX;
-        let noise = (unit_x8(mix_x8(pixel, seed)) - splat(0.5)) * splat(2.0 * grade.grain);
-        let byte = |c: F| {
-            let c = (c + noise).fast_max(F::ZERO).fast_min(F::ONE);
-            // A whole number added to 2^23 stands in the low bits.
-            ((c * splat(255.0) + splat(0.5)).floor() + splat(8_388_608.0)).to_bits() & splat_u(255)
-        };
-        let packed = (byte(colour.x) << 16u32) | (byte(colour.y) << 8u32) | byte(colour.z);
-        let count = out.len();
-        out.copy_from_slice(&packed.as_array()[..count]);
+    if grade.vignette > 0.0 {
+        let fx = (splat(x as f32 + 0.5) + RAMP) * splat(2.0 / w) - F::ONE;
+        let fy = ((y as f32 + 0.5) * 2.0 - h) / h;
+        let r2 = (fx * fx + splat(fy * fy)) * splat(0.5);
+        let fall = r2 * (splat(0.5939) + r2 * (splat(0.6871) - r2 * splat(0.2849)));
+        colour = colour * (F::ONE - splat(grade.vignette) * fall);
     }
+    let noise = noise(y * stage.width as usize + x, hash2(n as u32, 0)) * splat(2.0 * grade.grain);
+    let byte = |c: F| {
+        let c = (c + noise).fast_max(F::ZERO).fast_min(F::ONE);
+        // A whole number added to 2^23 stands in the low bits.
+        ((c * splat(255.0) + splat(0.5)).floor() + splat(8_388_608.0)).to_bits() & splat_u(255)
+    };
+    let packed = (byte(colour.x) << 16u32) | (byte(colour.y) << 8u32) | byte(colour.z);
+    let count = out.len();
+    out.copy_from_slice(&packed.as_array()[..count]);
 }
 
 /// Colours of filled and interpolated pixels: #E0342B and #2D6BFF.

@@ -1,9 +1,12 @@
 //! From linear light to the pixels of the screen.
 
 mod bloom;
+mod chain;
 mod display;
+mod effect;
 mod finish;
+mod picture;
 
-pub use bloom::{Bloom, Glow};
+pub use chain::Chain;
 pub use display::Display;
-pub use finish::finish;
+pub use finish::Post;

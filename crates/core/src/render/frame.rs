@@ -4,13 +4,13 @@ use super::Stage;
 use crate::counters::Counters;
 use crate::features;
 use crate::math::sampling::r2;
-use crate::post::Bloom;
+use crate::parallel;
+use crate::post::Post;
 use crate::quality::Quality;
 use crate::sample::{Scratch, TILE, Tile, beams, refine, share_edges, smoke, smooth_edges};
 use crate::scene::Scene;
 use crate::sim::{Simulation, Volume};
 use crate::study::Phase;
-use crate::{parallel, post};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Work on the tile whose upper left pixel is given.
@@ -39,7 +39,7 @@ impl Pool {
 pub struct Renderer {
     tiles: Vec<Tile>,
     scratch: Pool,
-    bloom: Bloom,
+    post: Post,
     simulation: Simulation,
     volume: Volume,
     /// What the last frame did; all 0 without the feature `counters`.
@@ -97,7 +97,7 @@ impl Renderer {
                 average(&mut self.tiles, &mut sums, pattern + 1);
             }
         }
-        self.counters.merge(&post::finish(&stage, &self.tiles, &mut self.bloom, n, pixels));
+        self.counters.merge(&self.post.finish(&stage, &self.tiles, n, pixels));
     }
 }
 

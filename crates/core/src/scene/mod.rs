@@ -8,6 +8,7 @@
 mod background;
 mod beam;
 mod camera;
+mod effect;
 mod field;
 mod light;
 mod material;
@@ -20,6 +21,7 @@ mod voxels;
 pub use background::{Background, Disc, Glow, Stop};
 pub use beam::Beam;
 pub use camera::Camera;
+pub use effect::{Effect, Kind, Place};
 pub use field::{Field, Form, Join, Node};
 pub use light::{Emitter, Light, LightKind, PointLight};
 pub use material::{Channel, Fire, Material};
@@ -154,6 +156,8 @@ pub struct Scene {
     pub smoke: Option<Smoke>,
     /// Grading of the finished picture.
     pub grade: Grade,
+    /// Effects on the graded picture, in their order; vignette and grain come after them.
+    pub effects: Vec<Effect>,
     /// Show how the frame was sampled, on this share of the picture's width from the left.
     pub overlay: f32,
     /// Show how many small lights reach the surfaces of each tile, over the picture with this

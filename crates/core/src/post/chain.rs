@@ -1,0 +1,99 @@
+//! The chain of effects: each reads one picture and writes another, row by row, on all threads.
+//!
+//! A pass is `v + (effect(v) - v) amount`; the amount is also a function of the place. Passes that
+//! change nothing are left out, so a chain of amounts 0 leaves the picture as it is, bit for bit.
+
+use super::bloom::Bloom;
+use super::effect::{self, Around};
+use super::picture::{PAD, Picture, REACH};
+use crate::counters::Counters;
+use crate::features;
+use crate::math::hash::hash2;
+use crate::math::lanes::{F, RAMP, V3, splat};
+use crate::parallel;
+use crate::scene::{Effect, Kind};
+
+/// Rows that are done as one piece of work.
+const ROWS: usize = 16;
+
+/// A picture of display values and what its effects need; lives from frame to frame.
+#[derive(Default)]
+pub struct Chain {
+    /// The picture, of the frame's size.
+    pub picture: Picture,
+    next: Picture,
+    bloom: Bloom,
+}
+
+impl Chain {
+    /// Gives the picture its size, and its pixels eight by eight.
+    #[inline(never)]
+    pub fn fill(&mut self, size: [usize; 2], value: &(dyn Fn(usize, usize) -> V3 + Sync)) {
+        self.picture.reset(size[0], size[1], 1);
+        write(&mut self.picture, value);
+    }
+
+    /// Applies effects, one after another, to frame `n`.
+    #[inline(never)]
+    pub fn run(&mut self, effects: &[Effect], n: u64, counters: &mut Counters) {
+        if !features::EFFECTS {
+            return;
+        }
+        let Chain { picture, next, bloom } = self;
+        let (width, height) = (picture.width, picture.height);
+        for effect in effects.iter().filter(|effect| effect.runs()) {
+            for _ in 0..effect.multipass {
+                if cfg!(feature = "counters") {
+                    counters.add(effect.kind.counter(), 1);
+                }
+                let shine = match effect.kind {
+                    Kind::Bloom { threshold, .. } if features::EFFECT_BLOOM => Some((threshold, 1)),
+                    Kind::WideBloom { threshold, octaves, .. } if features::EFFECT_WIDE_BLOOM => {
+                        Some((threshold, octaves.clamp(2, 4)))
+                    }
+                    _ => None,
+                };
+                let glow = shine.and_then(|(threshold, octaves)| {
+                    let read = |x, y| picture.near(x, y, 0, 0);
+                    bloom.of([width, height], (threshold, 1.0, octaves), read)
+                });
+                next.reset(width, height, 1);
+                let around = Around { picture, glow, seed: hash2(n as u32, 1) };
+                let (across, up) = (2.0 / width as f32, 2.0 / height as f32);
+                write(next, &|x, y| {
+                    let px = (splat(x as f32 + 0.5) + RAMP) * splat(across) - F::ONE;
+                    let py = 1.0 - (y as f32 + 0.5) * up;
+                    let place = &effect.place;
+                    let far = px * splat(place.normal.x) + splat(py * place.normal.y - place.from);
+                    let share = (far * splat(1.0 / place.over)).fast_max(F::ZERO).fast_min(F::ONE);
+                    let from = picture.near(x, y, 0, 0);
+                    let to = effect::apply(&effect.kind, &around, (x, y), (px, py), from);
+                    from + (to - from) * (share * splat(effect.amount))
+                });
+                std::mem::swap(picture, next);
+            }
+        }
+    }
+}
+
+/// Writes all pixels of a picture and repeats its edges.
+#[inline(never)]
+fn write(picture: &mut Picture, value: &(dyn Fn(usize, usize) -> V3 + Sync)) {
+    let (width, height, stride, line) = (picture.width, picture.height, picture.stride(), picture.line());
+    let rows = &mut picture.light[REACH * line..(REACH + height) * line];
+    parallel::each(rows.chunks_mut(ROWS * line), |strip, rows| {
+        for (row, y) in rows.chunks_mut(line).zip(strip * ROWS..) {
+            for x in (0..width).step_by(8) {
+                let v = value(x, y);
+                for (k, v) in [v.x, v.y, v.z].into_iter().enumerate() {
+                    let at = k * stride + PAD + x;
+                    row[at..at + 8].copy_from_slice(v.as_array());
+                }
+            }
+        }
+    });
+    picture.pad();
+}
+
+#[cfg(test)]
+mod tests;
