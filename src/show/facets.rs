@@ -46,6 +46,7 @@ type Rule = (fn(&mut Triangles, &mut Dice), usize, f32, f32);
 pub struct Dice(pub u32);
 
 impl Dice {
+    #[inline(never)]
     pub fn roll(&mut self, lo: f32, hi: f32) -> f32 {
         self.0 += 1;
         lo + (hi - lo) * unit(hash2(self.0, 64))

@@ -9,8 +9,7 @@ use super::paint::{degrees, key, seconds, surface, swing, times, v};
 use super::score;
 use super::still::{Lamp, Panel, Still};
 use glam::{Mat3, Vec3};
-use luc_core::math::hash::{hash2, unit};
-use luc_core::math::scalar::{cos, sin, sin_cos};
+use luc_core::math::scalar::{cos, sin};
 use luc_core::mesh::{Assembly, Instance, Mesh};
 use luc_core::scene::*;
 use luc_core::synth::track::{Strikes, pulse, strikes};
@@ -74,6 +73,7 @@ fn curve(corners: &[Vec3], x: f32) -> Vec3 {
 }
 
 /// Height of the hills.
+#[inline(never)]
 fn height(x: f32, z: f32) -> f32 {
     let rise = (-z - 26.0).max(0.0) * 0.055 * (1.0 + 0.6 * sin(0.11 * x + 1.4));
     let left = (-x - 6.0).max(0.0);
@@ -86,23 +86,26 @@ const CELLS: usize = 80;
 
 /// The hills as a net of triangles with smooth normals, finer towards the viewer.
 fn hills() -> Mesh {
-    let point = |i: usize, k: usize| {
-        let (u, w) = (i as f32 / CELLS as f32, k as f32 / CELLS as f32);
-        let z = 16.0 - 96.0 * w * (0.3 + 0.7 * w);
-        let x = (u - 0.5) * (40.0 - 1.2 * z) - 4.0;
-        v(x, height(x, z), z)
-    };
-    let normal = |p: Vec3| {
-        let slope = |x, z| height(p.x + x, p.z + z) - height(p.x - x, p.z - z);
-        v(-slope(0.05, 0.0), 0.1, -slope(0.0, 0.05))
-    };
-    let mut triangles = Vec::new();
-    for i in 0..CELLS * CELLS {
-        let (i, k) = (i % CELLS, i / CELLS);
-        let [a, b, c, d] = [(i, k), (i + 1, k), (i, k + 1), (i + 1, k + 1)].map(|(i, k)| point(i, k));
-        triangles.extend([[a, b, d], [a, d, c]]);
+    let (mut triangles, mut normals) = (Vec::new(), Vec::new());
+    for i in 0..CELLS * CELLS * 2 {
+        // Corners of the cell's upper or lower half, as steps across and along.
+        let corners = [[(0, 0), (1, 0), (1, 1)], [(0, 0), (1, 1), (0, 1)]][i % 2];
+        let at = |(across, along)| {
+            let step = |n: usize| n as i32 as f32 / CELLS as f32;
+            let (u, w) = (step(i / 2 % CELLS + across), step(i / 2 / CELLS + along));
+            let z = 16.0 - 96.0 * w * (0.3 + 0.7 * w);
+            (z, (u - 0.5) * (40.0 - 1.2 * z) - 4.0)
+        };
+        triangles.push(corners.map(|corner| {
+            let (z, x) = at(corner);
+            v(x, height(x, z), z)
+        }));
+        normals.push(corners.map(|corner| {
+            let (z, x) = at(corner);
+            let slope = |dx, dz| height(x - dx, z - dz) - height(x + dx, z + dz);
+            v(slope(0.05, 0.0), 0.1, slope(0.0, 0.05))
+        }));
     }
-    let normals = triangles.iter().map(|t: &[Vec3; 3]| t.map(normal)).collect();
     Mesh::smooth(triangles, normals)
 }
 
@@ -155,21 +158,27 @@ fn meshes() -> &'static [Arc<Mesh>] {
     })
 }
 
+/// Across and along the ruin's nave.
+const RUIN: Mat3 = Mat3::from_cols(v(0.97, 0.0, 0.242), Vec3::Y, v(-0.242, 0.0, 0.97));
+
 /// Hills and ruin.
 fn land() -> Assembly {
     let meshes = meshes();
-    let (sin, cos) = sin_cos(degrees(-14.0));
-    let turned = Mat3::from_cols(v(cos, 0.0, -sin), Vec3::Y, v(sin, 0.0, cos));
     let place = |(k, mesh): (usize, &Arc<Mesh>)| {
         let Some(k) = k.checked_sub(2) else {
             return Instance::new(mesh, Mat3::IDENTITY, Vec3::ZERO, k);
         };
         let side = if k % 2 == 0 { 1.0 } else { -1.0 };
-        let own = v(side * SIDE, 0.0, 4.0 - BAY * (k / 2) as f32);
-        let at = v(6.6, -0.9, -13.0) + turned * own;
-        Instance::new(mesh, turned * Mat3::from_diagonal(v(side, 1.0, 1.0)), at, 2)
+        let at = v(5.6, -0.9, -9.1) + RUIN.x_axis * (side * SIDE) - RUIN.z_axis * (BAY * (k / 2) as f32);
+        Instance::new(mesh, Mat3 { x_axis: RUIN.x_axis * side, ..RUIN }, at, 2)
     };
     Assembly::new(meshes.iter().enumerate().map(place).collect())
+}
+
+/// Adds a round glow.
+#[inline(never)]
+fn glow(scene: &mut Scene, at: Vec3, width: f32, colour: Vec3) {
+    scene.beams.push(Beam { from: at, to: at, width, colour, fade: 0.0 });
 }
 
 static STILL: Still = Still {
@@ -231,36 +240,31 @@ pub fn scene(frame: u64) -> Scene {
     // The corners are about equally far from each other, so the way runs evenly in them.
     let corners = (PATH.len() - 3) as f32;
     for i in 0..512 {
-        let random = |k: u32| unit(hash2(i, k));
-        let x = ((i as f32 + random(0)) / 512.0 + t * SPEED).fract() * corners;
+        // Each draws numbers of its own.
+        let mut dice = Dice(32 * i);
+        let x = ((i as f32 + dice.roll(0.0, 1.0)) / 512.0 + t * SPEED).fract() * corners;
         let scatter = 1.15 - 0.9 * x / corners;
-        let aside = |k: u32| {
-            let gauss = random(k) + random(k + 3) + random(k + 6) - 1.5;
-            gauss * scatter + 0.2 * swing(t, 0.7 + 0.7 * random(k + 9), random(k + 12))
-        };
-        let mut position = curve(&PATH, x) + v(aside(1), aside(2), aside(3));
+        let aside = [(); 3].map(|()| {
+            let gauss = dice.roll(-0.5, 0.5) + dice.roll(-0.5, 0.5) + dice.roll(-0.5, 0.5);
+            gauss * scatter + 0.2 * swing(t, dice.roll(0.7, 1.4), dice.roll(0.0, 1.0))
+        });
+        let mut position = curve(&PATH, x) + Vec3::from(aside);
         position.y = position.y.max(height(position.x, position.z) + 0.4);
         let kind = i as usize % 3;
         // The plucks reach the fireflies one after the other.
-        let wave = 0.7 + 0.7 * pulse(&PLUCK, frame.saturating_sub((6.0 * x) as u64), 6.0);
-        let strength = if position.z < -20.0 { 0.8 } else { 0.6 };
-        s.points.push(PointLight { position, radius: 3.4, colour: LIGHT[kind] * (strength * wave) });
+        let wave = 0.7 + 0.7 * pulse(&PLUCK, frame.saturating_sub((6.0 * x) as i32 as u64), 6.0);
+        s.points.push(PointLight { position, radius: 3.4, colour: LIGHT[kind] * (0.65 * wave) });
         // Dim at both ends of the stream, and close to the eye.
         let far = position.distance(s.camera.position);
         let seen = (4.0 * x).min(4.0 * (corners - x)).min(0.25 * far).min(1.0);
-        s.beams.push(Beam {
-            from: position,
-            to: position,
-            width: 0.02 + 0.03 * random(20),
-            colour: SHINE[kind] * ((1.9 + 10.0 / far).min(3.0) * wave * seen),
-            fade: 0.0,
-        });
+        let shine = (1.9 + 10.0 / far).min(3.0) * wave * seen;
+        glow(&mut s, position, dice.roll(0.02, 0.05), SHINE[kind] * shine);
     }
-    for i in 0..120 {
-        let random = |k: u32| 2.0 * unit(hash2(i, k)) - 1.0;
-        let from = s.camera.position + v(150.0 * random(40), 60.0 + 55.0 * random(41), -120.0);
-        let colour = times(v(0.5, 0.5, 0.9), 0.9 + 0.8 * random(42));
-        s.beams.push(Beam { from, to: from, width: 0.09, colour, fade: 0.0 });
+    let mut dice = Dice(0);
+    for _ in 0..120 {
+        let away = v(dice.roll(-150.0, 150.0), dice.roll(5.0, 115.0), -120.0);
+        let colour = v(0.5, 0.5, 0.9) * dice.roll(0.1, 1.7);
+        glow(&mut s, position + away, 0.09, colour);
     }
     s
 }
