@@ -1,8 +1,8 @@
 //! Small lights in great number: culling changes no byte, and light ends where it should. Shining
 //! rectangles: their shadows are as soft as the quality draws them.
 
-use glam::Vec3;
 use luc_core::counters::Counter;
+use luc_core::math::Vec3;
 use luc_core::math::hash::{hash2, unit};
 use luc_core::plan::{Plan, warnings};
 use luc_core::quality::Quality;
