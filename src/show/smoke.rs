@@ -3,7 +3,7 @@
 
 use super::paint::{degrees, key, orbit, seconds, surface, swing};
 use super::still::{Lamp, Still};
-use glam::Vec3;
+use luc_core::math::Vec3;
 use luc_core::math::hash::{hash2, mix, unit};
 use luc_core::scene::*;
 
@@ -19,7 +19,8 @@ const fn v(x: f32, y: f32, z: f32) -> Vec3 {
 
 /// A colour times a strength.
 const fn times(c: Vec3, k: f32) -> Vec3 {
-    Vec3::new(short(c.x * k), short(c.y * k), short(c.z * k))
+    let [x, y, z] = c.to_array();
+    Vec3::new(short(x * k), short(y * k), short(z * k))
 }
 
 /// Cells of the house, and their side.

@@ -2,7 +2,7 @@
 //! axes, or begin on the surface.
 
 use super::hash::{hash2, unit};
-use glam::Vec3;
+use crate::math::Vec3;
 
 /// Reproducible random numbers: a counter under a hash.
 pub struct Random(u32, u32);
@@ -58,7 +58,8 @@ impl Random {
         loop {
             let v = Vec3::new(self.range(-1.0, 1.0), self.range(-1.0, 1.0), self.range(-1.0, 1.0));
             if (0.01..1.0).contains(&v.length_squared()) {
-                return v.normalize();
+                // By the reciprocal, so that a stream keeps its cases.
+                return v * (1.0 / v.length());
             }
         }
     }

@@ -2,6 +2,7 @@
 
 use crate::cull::{Dop, FieldNode, Shaft, View, dops, field_nodes, shafts};
 use crate::features;
+use crate::math::Vec3;
 use crate::math::lanes::{F, V3, splat};
 use crate::post::Display;
 use crate::quality::{Quality, Rung};
@@ -9,7 +10,7 @@ use crate::scene::Scene;
 use crate::shade::{Lamp, MAX_LAMPS, Points, lamps};
 use crate::sim::Volume;
 use crate::trace::Shape;
-use glam::{Vec2, Vec3};
+use glam::Vec2;
 
 /// A scene, a quality and a size, with all that follows from them.
 pub struct Stage<'a> {
@@ -130,7 +131,7 @@ impl<'a> Stage<'a> {
     /// [`Stage::direction`] for eight positions.
     #[inline(never)]
     pub fn directions(&self, x: F, y: F) -> V3 {
-        let [right, up, forward] = self.view.world_from_view.to_cols_array_2d().map(|c| V3::splat(c.into()));
+        let [right, up, forward] = self.view.world_from_view.to_cols_array_2d().map(V3::splat);
         let pixel = splat(self.pixel);
         let x = (x + splat(self.shift.x) - splat(self.width as f32 * 0.5)) * pixel;
         let y = (splat(self.height as f32 * 0.5) - y - splat(self.shift.y)) * pixel;
@@ -149,13 +150,16 @@ impl<'a> Stage<'a> {
         } else {
             features::SMOOTH && self.scene.meshes.facet(shape - count).0.mesh().is_smooth()
         };
-        if vague {
-            Rung::Colour
-        } else if self.volume.is_some() {
-            self.quality.rung.min(Rung::Light)
-        } else {
-            self.quality.rung
-        }
+        let most = if vague { Rung::Colour } else { self.quality.rung };
+        // Nor is the hidden share of a shining rectangle, nor what smoke hides.
+        let soft = (0..self.lamps.len()).any(|lamp| self.shadow_rays(lamp) > 1) || self.volume.is_some();
+        if soft { most.min(Rung::Light) } else { most }
+    }
+
+    /// Shadow rays to a lamp.
+    pub fn shadow_rays(&self, lamp: usize) -> u32 {
+        let soft = features::SOFT_SHADOWS && self.scene.soft && self.lamps[lamp].is_emitter;
+        if soft { self.quality.shadow_samples } else { 1 }
     }
 
     /// Mask of the shapes that may show in the square of `side` px at `corner`, see

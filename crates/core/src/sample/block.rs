@@ -1,12 +1,12 @@
 //! What is known of traced samples, in blocks of eight: a packet's results are stored as vectors.
 
+use crate::math::Vec3;
 use crate::math::lanes::{F, U, V3, splat};
 use crate::quality::Rung;
 use crate::render::Stage;
 use crate::scene::{Material, Voxels};
 use crate::shade::Codes;
 use crate::trace::{Shape, relief_within};
-use glam::Vec3;
 
 /// Eight samples that were traced as one packet.
 #[derive(Clone, Copy, Default)]
@@ -119,6 +119,11 @@ impl<'a> Sample<'a> {
             return None;
         }
         Some(&stage.scene.materials[shape.material()])
+    }
+    /// Whether the first hit is of a mesh with interpolated normals.
+    pub fn is_of_smooth_mesh(self, stage: &Stage) -> bool {
+        let facet = (self.id() >= 0.0).then(|| stage.scene.shape(self.id() as usize >> 2));
+        matches!(facet, Some(Shape::Facet(instance, _)) if instance.mesh().is_smooth())
     }
     /// The voxels that the first hit is of.
     pub fn voxels<'s>(self, stage: &Stage<'s>) -> Option<&'s Voxels> {

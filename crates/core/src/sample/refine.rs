@@ -17,12 +17,13 @@ use super::wave::{Position, Scratch, trace};
 use crate::counters::{Counter, Counters};
 use crate::cull::{Bounds, Region, may_cover, occluders};
 use crate::features;
+use crate::math::Vec3;
 use crate::math::lanes::F;
 use crate::quality::Rung;
 use crate::render::Stage;
 use crate::shade::MAX_LAMPS;
 use crate::trace::{BLOCKED, Shape};
-use glam::{Vec2, Vec3};
+use glam::Vec2;
 
 /// A square between samples; `x`, `y` from the tile's corner, px.
 #[derive(Clone, Copy)]
@@ -172,9 +173,11 @@ impl Known<'_> {
         self.all(|s, first| s.signature() == first.signature())
     }
 
-    /// Whether what the samples saw differs visibly.
+    /// Whether what the samples saw differs visibly. A smooth mesh is one surface that may stand before
+    /// itself.
     fn is_edge(&self, stage: &Stage) -> bool {
-        let alike = self.same_surface() && self.same_signature();
+        let folds = features::SMOOTH && self.samples[0].is_of_smooth_mesh(stage);
+        let alike = !folds && self.same_surface() && self.same_signature();
         !alike && !self.agree_within(2.0 * stage.quality.tolerance)
     }
 
@@ -295,7 +298,13 @@ impl Surroundings {
             let position = stage.lamps[lamp].position;
             let faces = known.samples[..4].iter().any(|s| s.normal().dot(position - s.point()) > 0.0);
             let lit = faces && known.samples[..4].iter().all(|s| s.code(lamp) != BLOCKED);
-            if (self.shadows[lamp] == 0 && meshes.is_empty()) || !lit || !stage.lamps[lamp].lights(material) {
+            // Soft shadows rest on the samples alone.
+            let soft = stage.shadow_rays(lamp) > 1;
+            if (self.shadows[lamp] == 0 && meshes.is_empty())
+                || soft
+                || !lit
+                || !stage.lamps[lamp].lights(material)
+            {
                 continue;
             }
             let to = points.map(|p| p - position);

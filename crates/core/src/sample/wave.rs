@@ -10,6 +10,7 @@ use super::scatter::{self, Draw, Way};
 use crate::counters::{Counter, Counters};
 use crate::cull::{Bounds, Region, occluders};
 use crate::features;
+use crate::math::Vec3;
 use crate::math::hash::mix_x8;
 use crate::math::lanes::{F, U, V3, splat};
 use crate::render::Stage;
@@ -17,7 +18,6 @@ use crate::scene::{Channel, Shading};
 use crate::shade::{self, MAX_LAMPS, Visibility};
 use crate::study::Phase;
 use crate::trace::{Hits, NONE, Rays8, nearest, surface};
-use glam::Vec3;
 
 /// Buffers of one thread, reused from tile to tile.
 #[derive(Default)]
@@ -341,8 +341,11 @@ impl Found {
     /// Hash of what each lane saw.
     fn hash(&self, stage: &Stage) -> U {
         let mut h = mix_x8(self.block.id.to_bits() ^ self.part.to_bits(), self.block.signature);
-        for code in &self.block.codes[..stage.lamps.len().min(MAX_LAMPS)] {
-            h = mix_x8(h, code.to_bits());
+        for (k, code) in self.block.codes[..stage.lamps.len().min(MAX_LAMPS)].iter().enumerate() {
+            // Soft shadows have no edges.
+            if stage.shadow_rays(k) == 1 {
+                h = mix_x8(h, code.to_bits());
+            }
         }
         h
     }

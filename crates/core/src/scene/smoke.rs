@@ -1,7 +1,7 @@
 //! Smoke: what it is made of and how it moves. What it looks like at a step is found by simulation.
 
 use super::Voxels;
-use glam::Vec3;
+use crate::math::Vec3;
 
 /// How the air moves. Rates are per second, lengths world units; one step takes [`Air::SECONDS`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,7 +43,7 @@ impl Air {
     /// What it comes to in a step, for cells of a side, world units.
     pub const fn motion(self, cell: f32) -> Motion {
         let pace = Self::SECONDS * Self::SECONDS / cell;
-        let Vec3 { x, y, z } = self.wind;
+        let [x, y, z] = self.wind.to_array();
         let slow = 1.0 - self.drag * Self::SECONDS;
         let (fade, cool) = (1.0 - self.fade * Self::SECONDS, 1.0 - self.cool * Self::SECONDS);
         Motion {

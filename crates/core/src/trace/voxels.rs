@@ -9,11 +9,11 @@
 
 use super::{Rays8, Span};
 use crate::counters::{Counter, Counters};
+use crate::math::Vec3;
 use crate::math::hash::{mix_x8, unit_x8};
 use crate::math::lanes::{F, V3, from_bits, splat};
 use crate::math::noise;
 use crate::scene::Voxels;
-use glam::Vec3;
 
 /// Directions nearer to 0 are taken for this, which is too small to be seen, and so never give 0/0.
 const LEVEL: f32 = 1e-30;

@@ -2,11 +2,11 @@
 
 use lexopt::prelude::*;
 use luc_pack::report::{self, LIMIT, Report, history};
-use luc_pack::{Error, Method, Options, check, pack_elf_as, percent, size_build, write_executable};
+use luc_pack::{Error, Method, Options, check, pack_elf_as, percent, release, size_build, write_executable};
 use std::process::ExitCode;
 
 const HELP: &str = "\
-cargo pack [--check] [--report] [--history] [--method cm|lzma|raw]
+cargo pack [--check] [--report] [--history] [--release] [--method cm|lzma|raw]
 
 Builds the intro for size and packs it. Writes target/pack/luc, the packed file, and
 target/pack/luc-safe, the same program unpacked, and prints what became of each byte.
@@ -16,6 +16,8 @@ target/pack/luc-safe, the same program unpacked, and prints what became of each 
                      target/pack/report.html, which also shows what changed since the last
       --history      add this commit's sizes to docs/size-history.csv, and draw them
                      in docs/size-history.svg
+      --release      write the folder that one sends to a party, target/pack/luc-VERSION: both
+                     files, luc.nfo, file_id.diz and a picture; and the tune beside it
       --method NAME  cm: context mixing, smallest (default); lzma: starts faster;
                      raw: no compression
   -h, --help         this text
@@ -29,6 +31,7 @@ struct Arguments {
     check: bool,
     report: bool,
     history: bool,
+    release: bool,
     method: Method,
 }
 
@@ -61,13 +64,15 @@ fn fail(sentence: &str, code: u8) -> ExitCode {
 }
 
 fn arguments() -> Result<Option<Arguments>, lexopt::Error> {
-    let mut arguments = Arguments { check: false, report: false, history: false, method: Method::Cm };
+    let mut arguments =
+        Arguments { check: false, report: false, history: false, release: false, method: Method::Cm };
     let mut parser = lexopt::Parser::from_env();
     while let Some(argument) = parser.next()? {
         match argument {
             Long("check") => arguments.check = true,
             Long("report") => arguments.report = true,
             Long("history") => arguments.history = true,
+            Long("release") => arguments.release = true,
             Long("method") => {
                 let name = parser.value()?.string()?;
                 arguments.method =
@@ -107,5 +112,10 @@ fn pack(arguments: &Arguments) -> Result<Option<String>, Error> {
     if report.total > LIMIT {
         return Ok(Some(format!("{} bytes over the limit of {LIMIT}", report.total - LIMIT)));
     }
-    Ok(if arguments.check { check::compare(&file, &safe)? } else { None })
+    let complaint = if arguments.check { check::compare(&file, &safe)? } else { None };
+    if arguments.release && complaint.is_none() {
+        let folder = release::write(&output, &packed.file, &packed.stripped, env!("CARGO_PKG_VERSION"))?;
+        println!("release        {}", folder.display());
+    }
+    Ok(complaint)
 }
