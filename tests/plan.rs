@@ -154,8 +154,10 @@ fn named_in_the_manifest() -> Vec<String> {
         names.map(|name| name.trim_matches('"').trim_start_matches("luc-core/").to_owned()).collect()
     };
     let mut names = list("luc-core = { workspace", "features = [");
-    if cfg!(feature = "smoke") {
-        names.extend(list("smoke = [", "["));
+    for (part, called) in [("smoke = [", cfg!(feature = "smoke")), ("swarm = [", cfg!(feature = "swarm"))] {
+        if called {
+            names.extend(list(part, "["));
+        }
     }
     names.sort();
     names

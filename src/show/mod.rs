@@ -14,6 +14,8 @@ pub mod score;
 #[cfg(feature = "smoke")]
 mod smoke;
 mod still;
+#[cfg(feature = "swarm")]
+mod swarm;
 mod text;
 
 use luc_core::quality::Quality;
@@ -62,6 +64,8 @@ pub const PARTS: &[Part] = &[
     part("blobs", &score::BLOBS, blobs::scene),
     #[cfg(feature = "smoke")]
     part("smoke", &score::SMOKE, smoke::scene),
+    #[cfg(feature = "swarm")]
+    part("swarm", &score::SWARM, swarm::scene),
     part("end", &score::END, end::scene),
 ];
 

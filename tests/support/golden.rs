@@ -10,7 +10,7 @@ use std::path::PathBuf;
 pub const SIZE: (u32, u32) = (320, 180);
 
 /// Part and local frame of the kept pictures.
-pub const FRAMES: [(&str, u64); 27] = [
+pub const FRAMES: [(&str, u64); 30] = [
     ("blobs", 0),     // the drop: the lattice closed
     ("blobs", 400),   // satellites fly
     ("blobs", 1199),  // last frame
@@ -38,13 +38,16 @@ pub const FRAMES: [(&str, u64); 27] = [
     ("end", 479),     // last frame, which Lúč's first follows
     ("smoke", 0),     // the house before the fire
     ("smoke", 421),   // between two steps: the first smoke
+    ("swarm", 0),     // first frame: in the nave
+    ("swarm", 560),   // before the ruin
+    ("swarm", 1020),  // the tiles with their lights
 ];
 
 /// Part, local frame, preset, size.
 pub type Frame = (&'static str, u64, &'static str, (u32, u32));
 
 /// Frames whose fingerprints are kept.
-pub const FINGERPRINTS: [Frame; 28] = [
+pub const FINGERPRINTS: [Frame; 32] = [
     ("blobs", 12, "draft", (333, 187)),
     ("blobs", 700, "medium", (320, 180)),
     ("blobs", 950, "ultra", (320, 180)),
@@ -73,15 +76,19 @@ pub const FINGERPRINTS: [Frame; 28] = [
     ("smoke", 420, "reference", (96, 54)),
     ("smoke", 700, "medium", (320, 180)),
     ("smoke", 1439, "draft", (333, 187)),
+    ("swarm", 150, "draft", (333, 187)),
+    ("swarm", 480, "medium", (320, 180)),
+    ("swarm", 900, "ultra", (320, 180)),
+    ("swarm", 1199, "reference", (96, 54)),
 ];
 
 /// Whether a part is in the 64 kB file too.
 pub fn in_every_build(part: &str) -> bool {
-    part != "smoke"
+    !matches!(part, "smoke" | "swarm")
 }
 
 /// Part and local frame of those whose value is kept for all builds, in `values.txt`.
-pub const VALUES: [(&str, u64); 17] = [
+pub const VALUES: [(&str, u64); 19] = [
     ("blobs", 200),
     ("blobs", 600),
     ("blobs", 1000),
@@ -99,6 +106,8 @@ pub const VALUES: [(&str, u64); 17] = [
     ("facets", 1260),
     ("end", 240),
     ("smoke", 180),
+    ("swarm", 300),
+    ("swarm", 960),
 ];
 
 /// Size of those.
