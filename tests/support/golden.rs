@@ -84,7 +84,7 @@ pub const FINGERPRINTS: [Frame; 32] = [
 
 /// Whether a part is in the 64 kB file too.
 pub fn in_every_build(part: &str) -> bool {
-    !matches!(part, "smoke" | "swarm")
+    part != "swarm"
 }
 
 /// Part and local frame of those whose value is kept for all builds, in `values.txt`.

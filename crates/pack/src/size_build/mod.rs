@@ -82,7 +82,7 @@ pub fn build(root: &Path, output: &Path) -> Result<PathBuf, Error> {
     command
         .current_dir(&workspace)
         .args(["build", "--quiet", "--locked", "--package=luc", "--bin=luc", "--profile=intro"])
-        .args(["--no-default-features", "--features=sound", "--target", workspace::TARGET])
+        .args(["--no-default-features", "--features=sound,smoke", "--target", workspace::TARGET])
         .args(["-Zbuild-std=std,panic_abort", "-Zbuild-std-features=optimize_for_size"])
         .arg("--target-dir")
         .arg(&target_directory)
