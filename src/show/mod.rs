@@ -4,6 +4,8 @@
 //! pure function of its local frame, so any frame can be rendered on its own and nothing drifts.
 
 mod blobs;
+#[cfg(feature = "cost")]
+mod cost;
 mod end;
 mod facets;
 mod gold;
@@ -62,6 +64,8 @@ pub const PARTS: &[Part] = &[
     part("blobs", &score::BLOBS, blobs::scene),
     #[cfg(feature = "smoke")]
     part("smoke", &score::SMOKE, smoke::scene),
+    #[cfg(feature = "cost")]
+    part("cost", &score::COST, cost::scene),
     part("end", &score::END, end::scene),
 ];
 

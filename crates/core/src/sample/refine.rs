@@ -17,9 +17,11 @@ use super::wave::{Position, Scratch, trace};
 use crate::counters::{Counter, Counters};
 use crate::cull::{Bounds, Region, may_cover, occluders};
 use crate::features;
+use crate::math::hash::hash2;
 use crate::math::lanes::F;
 use crate::quality::Rung;
 use crate::render::Stage;
+use crate::scene::Split;
 use crate::shade::MAX_LAMPS;
 use crate::trace::{BLOCKED, Shape};
 use glam::{Vec2, Vec3};
@@ -46,6 +48,14 @@ impl Cell {
         let (size, i) = if i < 4 { (self.size, i) } else { (self.size / 2, 3) };
         (self.x + (i & 1) * size, self.y + (i >> 1) * size)
     }
+
+    /// Whether it has pixels on this side of the scene's line.
+    fn lies(self, stage: &Stage, corner: (usize, usize), side: usize) -> bool {
+        let last = self.size - 1;
+        let (x, y) = (corner.0 + self.x, corner.1 + self.y);
+        stage.sides().contains(&side)
+            && (0..4).any(|i| stage.side(x + (i & 1) * last, y + (i >> 1) * last) == side)
+    }
 }
 
 /// What a tile knows of the shapes that may show, or cast shadows, in it.
@@ -60,8 +70,32 @@ struct Surroundings {
 pub fn refine(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize), tile: &mut Tile) {
     let width = TILE.min(stage.width as usize - corner.0);
     let height = TILE.min(stage.height as usize - corner.1);
-    let cell = stage.quality.cell(stage.height) as usize;
     let mut around = Surroundings { shapes: stage.candidates(corner, TILE), shadows: [u64::MAX; MAX_LAMPS] };
+    tile.edges = [[false; GRID]; GRID];
+    for side in stage.sides() {
+        refine_side(stage, scratch, corner, (width, height), side, &mut around, tile);
+    }
+    if features::SPLIT && stage.scene.split.is_some() {
+        measure(stage, scratch, corner, (width, height), around.shapes, tile);
+    }
+}
+
+/// Samples what of the tile lies on one side of the scene's line.
+fn refine_side(
+    stage: &Stage,
+    scratch: &mut Scratch,
+    corner: (usize, usize),
+    (width, height): (usize, usize),
+    side: usize,
+    around: &mut Surroundings,
+    tile: &mut Tile,
+) {
+    let before = scratch.counters.rays();
+    let cell = match (side, stage.quality.cell(stage.height) as usize) {
+        (0, _) | (_, 1) => 1,
+        (_, cell) if stage.sides().len() == 2 => (cell * 4).min(32),
+        (_, cell) => cell,
+    };
     scratch.samples.0.clear();
     scratch.grid.clear();
     scratch.grid.resize(GRID * GRID, u32::MAX);
@@ -70,10 +104,12 @@ pub fn refine(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize), tile
     let along = |end: usize| (0..TILE).map(|i| i * cell).take_while(move |x| *x < end);
     for y in along(height) {
         for x in along(width) {
-            cells.push(Cell { x, y, size: cell });
+            let cell = Cell { x, y, size: cell };
+            if cell.lies(stage, corner, side) {
+                cells.push(cell);
+            }
         }
     }
-    tile.edges = [[false; GRID]; GRID];
     let mut done = 0;
     // Level by level: the cells of the next one are appended.
     while done < cells.len() {
@@ -99,20 +135,52 @@ pub fn refine(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize), tile
                         tile.edges[y][x] = true;
                     }
                 }
-            } else if cell.size <= stage.quality.smallest as usize
-                || (known.smooth(stage)
-                    && !around.may_hide_something(stage, corner, cell, &known, &mut scratch.counters))
+            } else if !cell.lies(stage, corner, 1 - side)
+                && (cell.size <= stage.quality.smallest as usize
+                    || (known.smooth(stage)
+                        && !around.may_hide_something(stage, corner, cell, &known, &mut scratch.counters)))
             {
                 fill(stage, corner, cell, &known, tile, &mut scratch.counters);
             } else {
                 let half = Cell { size: cell.size / 2, ..cell };
                 for (x, y) in (0..4).map(|i| half.point(i)) {
-                    if x < width && y < height {
-                        cells.push(Cell { x, y, ..half });
+                    let half = Cell { x, y, ..half };
+                    if x < width && y < height && half.lies(stage, corner, side) {
+                        cells.push(half);
                     }
                 }
             }
         }
+    }
+    tile.rays[side] = scratch.counters.rays() - before;
+}
+
+/// Holds pixels right of the line that have no ray of their own against one: one in so many, by a hash.
+fn measure(
+    stage: &Stage,
+    scratch: &mut Scratch,
+    corner: (usize, usize),
+    (width, height): (usize, usize),
+    shapes: u64,
+    tile: &mut Tile,
+) {
+    let (mut pixels, mut positions) = (Vec::new(), Vec::new());
+    for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
+        let (px, py) = (corner.0 + x, corner.1 + y);
+        if stage.side(px, py) == 1 && hash2(px as u32, py as u32).is_multiple_of(Split::MEASURED) {
+            tile.measured[0] += 1.0;
+            if tile.record[y * TILE + x].kind() != Kind::Traced {
+                pixels.push(tile.get(x, y));
+                positions.push((px as f32 + 0.5, py as f32 + 0.5));
+            }
+        }
+    }
+    scratch.counters.add(Counter::Measured, pixels.len());
+    scratch.samples.0.clear();
+    trace(stage, scratch, &positions, shapes);
+    for (i, &pixel) in pixels.iter().enumerate() {
+        let off = stage.display.map(pixel) - scratch.samples.get(i).display();
+        tile.measured[1] += off.dot(off);
     }
 }
 
