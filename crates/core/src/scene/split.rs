@@ -1,7 +1,7 @@
 //! A frame that is sampled in two ways, parted by a line, to show what they cost.
 //!
 //! Left of the line every pixel is traced; right of it the frame is sampled adaptively, as ever. The
-//! rays of each side are counted, and the error of the right side is measured: of its pixels one in 16,
+//! rays of each side are counted, and the error of the right side is measured: of its pixels one in four,
 //! drawn by a hash, is held against its own ray, at its centre and before edges get their further
 //! samples. Those rays are not counted as its cost.
 
@@ -23,7 +23,7 @@ pub struct Split {
 
 impl Split {
     /// One pixel in so many is measured.
-    pub const MEASURED: u32 = 16;
+    pub const MEASURED: u32 = 4;
 }
 
 /// What the sides of a split frame cost.
