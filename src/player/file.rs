@@ -7,7 +7,7 @@
 use super::text::{Text, ascii, join, number, quoted};
 use std::ffi::OsStr;
 use std::fs::{File, OpenOptions, remove_file, rename};
-use std::io::{Error, ErrorKind, Write};
+use std::io::{Error, Write};
 use std::path::{Path, PathBuf};
 
 /// A place that can be written, as far as can be known before writing.
@@ -33,7 +33,7 @@ impl Target {
                 Ok(Target::Ordinary(path.canonicalize().unwrap_or(path)))
             }
             Ok(file) => Ok(Target::Device(path, file)),
-            Err(e) if e.kind() == ErrorKind::NotFound => {
+            Err(e) if e.raw_os_error() == Some(NOT_FOUND) => {
                 let trial = aside(&path);
                 create(&trial).map_err(|e| cannot(&path, e))?;
                 let _ = remove_file(trial);
@@ -106,19 +106,51 @@ fn cannot(path: &Path, e: Error) -> Text {
     join(&[b"cannot write ", &name, b": ", &reason(&e), b"; choose another place"])
 }
 
-/// The common reasons in words; the standard library's own words would bring its formatting along.
+/// Numbers of errors, each 128 up, and the reason in words, then a zero; the standard library's own words
+/// would bring its formatting along, and its kinds of errors a large table. They are those of Linux; other
+/// systems share all but the last, or, if they aren't Unix, get the number.
+const REASONS: &[u8] = b"\x82\x94no such directory\0\x81\x8dpermission denied\0\x95it is a directory\0\
+    \x9cno space left\0\xa0the reader has closed the pipe\0\x9ethe file system is read-only\0\
+    \xa4\x96the name is too long or not allowed\0";
+
+/// What the system calls a file that isn't there.
+const NOT_FOUND: i32 = 2;
+
 fn reason(e: &Error) -> Text {
-    let words: &[u8] = match e.kind() {
-        ErrorKind::NotFound | ErrorKind::NotADirectory => b"no such directory",
-        ErrorKind::PermissionDenied => b"permission denied",
-        ErrorKind::IsADirectory => b"it is a directory",
-        ErrorKind::StorageFull => b"no space left",
-        ErrorKind::BrokenPipe => b"the reader has closed the pipe",
-        ErrorKind::ReadOnlyFilesystem => b"the file system is read-only",
-        ErrorKind::InvalidFilename => b"the name is too long or not allowed",
-        _ => {
-            return join(&[b"the system refused with error ", &number(e.raw_os_error().unwrap_or(0) as u64)]);
+    let code = e.raw_os_error().unwrap_or(0);
+    let mut words = Text::new();
+    let mut found = false;
+    for &byte in REASONS {
+        match byte {
+            0 if found => return words,
+            0..128 if found => words.push(byte),
+            _ => found |= cfg!(unix) && i32::from(byte) == code + 128,
         }
-    };
-    words.to_vec()
+    }
+    join(&[b"the system refused with error ", &number(code as u64)])
+}
+
+#[cfg(all(test, target_os = "linux"))]
+mod tests {
+    use super::*;
+    use std::io::ErrorKind;
+
+    #[test]
+    fn the_reasons_are_those_of_the_standard_library() {
+        for code in 0..200 {
+            let e = Error::from_raw_os_error(code);
+            let expected = match e.kind() {
+                ErrorKind::NotFound | ErrorKind::NotADirectory => "no such directory".into(),
+                ErrorKind::PermissionDenied => "permission denied".into(),
+                ErrorKind::IsADirectory => "it is a directory".into(),
+                ErrorKind::StorageFull => "no space left".into(),
+                ErrorKind::BrokenPipe => "the reader has closed the pipe".into(),
+                ErrorKind::ReadOnlyFilesystem => "the file system is read-only".into(),
+                ErrorKind::InvalidFilename => "the name is too long or not allowed".into(),
+                ErrorKind::InvalidInput => "the name is too long or not allowed".into(),
+                _ => format!("the system refused with error {code}"),
+            };
+            assert_eq!(String::from_utf8(reason(&e)).unwrap(), expected, "error {code}");
+        }
+    }
 }

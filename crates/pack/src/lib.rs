@@ -17,6 +17,7 @@ mod elf;
 pub mod encode;
 mod error;
 pub mod report;
+mod sections;
 pub mod size_build;
 
 use codec::format::{ELF_HEADERS, Header, NEEDS_AVX2};

@@ -33,6 +33,13 @@ struct Arguments {
 }
 
 fn main() -> ExitCode {
+    if std::env::var_os(size_build::order::VARIABLE).is_some() {
+        let arguments: Vec<_> = std::env::args_os().skip(1).collect();
+        return match size_build::order::link(&arguments) {
+            Ok(code) => ExitCode::from(code as u8),
+            Err(error) => fail(&error.to_string(), 2),
+        };
+    }
     let arguments = match arguments() {
         Ok(Some(arguments)) => arguments,
         Ok(None) => {

@@ -8,11 +8,10 @@
 
 use crate::Error;
 use crate::elf::{u16_at, u32_at, u64_at};
+use crate::sections::{SHF_ALLOC, SHT_NOBITS, Section, sections, text_at};
 use std::ops::Range;
 
 const SHT_SYMTAB: u32 = 2;
-const SHT_NOBITS: u32 = 8;
-const SHF_ALLOC: u64 = 2;
 const STT_OBJECT: u8 = 1;
 const STT_FUNC: u8 = 2;
 
@@ -25,29 +24,15 @@ pub struct Symbol {
     pub name: String,
 }
 
-struct Section {
-    kind: u32,
-    flags: u64,
-    address: u64,
-    offset: usize,
-    length: usize,
-    link: usize,
-    name: usize,
-}
-
 /// Names for all bytes of `file`, in order and without gaps, up to the offset `end`.
 pub fn symbols(file: &[u8], end: usize) -> Result<Vec<Symbol>, Error> {
     let sections = sections(file)?;
     let mut named = functions(file, &sections)?;
     named.sort_by_key(|symbol| (symbol.range.start, symbol.range.end));
-    let names = sections.get(usize::from(u16_at(file, 62)?)).map_or(0, |names| names.offset);
     let mut whole: Vec<Symbol> = sections
         .iter()
         .filter(|s| s.flags & SHF_ALLOC != 0 && s.kind != SHT_NOBITS)
-        .map(|s| Symbol {
-            range: s.offset..s.offset + s.length,
-            name: format!("[{}]", text_at(file, names + s.name)),
-        })
+        .map(|s| Symbol { range: s.offset..s.offset + s.length, name: format!("[{}]", s.name) })
         .collect();
     whole.sort_by_key(|symbol| symbol.range.start);
     Ok(over(over(vec![Symbol { range: 0..end, name: "[headers]".to_owned() }], whole), named))
@@ -76,28 +61,6 @@ fn over(below: Vec<Symbol>, above: Vec<Symbol>) -> Vec<Symbol> {
     }
     fill(&mut all, at..end);
     all
-}
-
-fn sections(file: &[u8]) -> Result<Vec<Section>, Error> {
-    let table = u64_at(file, 40)? as usize;
-    let count = if table == 0 || u16_at(file, 58)? != 64 { 0 } else { usize::from(u16_at(file, 60)?) };
-    (0..count)
-        .map(|i| {
-            let header = file.get(table.saturating_add(i * 64)..).unwrap_or(&[]);
-            let section = Section {
-                name: u32_at(header, 0)? as usize,
-                kind: u32_at(header, 4)?,
-                flags: u64_at(header, 8)?,
-                address: u64_at(header, 16)?,
-                offset: u64_at(header, 24)? as usize,
-                length: u64_at(header, 32)? as usize,
-                link: u32_at(header, 40)? as usize,
-            };
-            let inside = section.kind == SHT_NOBITS
-                || section.offset.checked_add(section.length).is_some_and(|end| end <= file.len());
-            if inside { Ok(section) } else { Err(Error::Malformed) }
-        })
-        .collect()
 }
 
 /// The functions and variables of the table of symbols, if there is one.
@@ -140,11 +103,6 @@ pub fn names(file: &[u8]) -> Result<Vec<String>, Error> {
         Ok(name.split('@').next().unwrap_or_default().to_owned())
     };
     entries.map(name).collect()
-}
-
-fn text_at(file: &[u8], at: usize) -> String {
-    let bytes = file.get(at..).unwrap_or(&[]).split(|&byte| byte == 0).next().unwrap_or(&[]);
-    String::from_utf8_lossy(bytes).into_owned()
 }
 
 /// A symbol as written in the source, without the hashes of crates.

@@ -4,9 +4,10 @@
 //! when something fails: 175 kB packed, before the first line of its own. So this build compiles
 //! the standard library too, for size and without messages, which needs its source
 //! ([`toolchain`]) and, on a stable compiler, the permission `RUSTC_BOOTSTRAP`. Dependencies are
-//! trimmed copies ([`trim`]) in a workspace of their own ([`workspace`]).
+//! trimmed copies ([`trim`]) in a workspace of their own ([`workspace`]). What is linked is put in order ([`order`]).
 
 mod edit;
+pub mod order;
 pub mod std_source;
 pub mod toolchain;
 pub mod trim;
@@ -59,6 +60,9 @@ const RUSTFLAGS: &[&str] = &[
     "--cap-lints=allow",
 ];
 
+/// Tells cargo which program links; not among the flags, whose words get into the names of symbols.
+const LINKER: &str = "CARGO_TARGET_X86_64_UNKNOWN_LINUX_GNU_LINKER";
+
 /// Flags for minifb's scaler, which is written in C.
 const CFLAGS: &str = "-Os -fno-asynchronous-unwind-tables -fcf-protection=none -ffunction-sections -fno-pic \
                       -fno-tree-vectorize";
@@ -83,6 +87,8 @@ pub fn build(root: &Path, output: &Path) -> Result<PathBuf, Error> {
         .arg("--target-dir")
         .arg(&target_directory)
         .env("RUSTC_BOOTSTRAP", "1")
+        .env(LINKER, std::env::current_exe().map_err(Error::file("this program"))?)
+        .env(order::VARIABLE, "1")
         .env("CARGO_ENCODED_RUSTFLAGS", RUSTFLAGS.join("\x1f"))
         .env("CFLAGS_x86_64_unknown_linux_gnu", CFLAGS);
     if let Some(source) = std_source::prepare(&toolchain.library, &workspace.join("std"))? {

@@ -16,6 +16,18 @@ pub fn trim(source: &mut Source, keys: &BTreeSet<String>) -> Result<(), Error> {
         let old = format!("|e| Error::WindowCreate(format!(\"{message}\", e))");
         source.replace_text(x11, &old, "|_| Error::WindowCreate(String::new())", edit)?;
     }
+    for message in [
+        "XOpenDisplay failed",
+        "No 32-bit format available",
+        "Unable to open Window",
+        "Unable to create pixel buffer",
+        "Window name too long",
+    ] {
+        source.replace_text(x11, &format!("\"{message}\".to_owned()"), "String::new()", edit)?;
+    }
+    for message in ["Buffer size too large", "Update failed because input buffer is empty"] {
+        source.replace_text("src/lib.rs", &format!("\"{message}\".to_string()"), "String::new()", edit)?;
+    }
     let (start, end) =
         ("        let err = format!(\n        \"Update failed", "        Err(Error::UpdateFailed(err))");
     source.replace("src/lib.rs", start, end, "        let err = String::new();\n", edit)?;
@@ -138,6 +150,32 @@ pub fn trim(source: &mut Source, keys: &BTreeSet<String>) -> Result<(), Error> {
     )?;
     source.cut_from(x11, "impl Drop for Window {", edit)?;
 
+    // What only sees to transparent windows, to windows of one size, and to their places and threads.
+    for (start, end, new) in [
+        ("            if (lib.XInitThreads)()", "            let display = (lib.XOpenDisplay)", ""),
+        ("            let mut vinfo: xlib", "            let gc = (lib.XDefaultGC)", MINIFB_SCREEN),
+        ("            let gc = (lib.XDefaultGC)", "            let screen_width", MINIFB_NO_GC),
+        ("            let context = (lib.Xrm", "            Ok(DisplayInfo {", MINIFB_NO_CONTEXT),
+        ("            if opts.transparency {", "            attributes.backing_store", ""),
+        ("            if !opts.resize ||", "            if opts.borderless ||", ""),
+        (
+            "        unsafe {\n            (self.d.lib.XMoveWindow)",
+            GET_POSITION,
+            "        _ = (x, y);\n    }\n\n",
+        ),
+        ("        let (x, y);\n", GET_SIZE, "        (0, 0)\n    }\n\n"),
+        ("                /* After XkbSet", "                self.process_key(ev, false", ""),
+    ] {
+        source.replace(x11, start, end, new, edit)?;
+    }
+    for line in [
+        "            (d.lib.XSelectInput)(d.display, handle, KeyPressMask | KeyReleaseMask);\n",
+        "            (d.lib.XClearWindow)(d.display, handle);\n",
+        "                    (d.lib.XDestroyWindow)(d.display, handle);\n",
+    ] {
+        source.replace_text(x11, line, "", edit)?;
+    }
+
     let edit = "pass its title on";
     source.replace(
         x11,
@@ -177,6 +215,21 @@ const MINIFB_BLIT: &str = r#"        for row in 0..buf_height.min(self.height as
         }
 
 "#;
+
+const MINIFB_SCREEN: &str = r#"            screen = (lib.XDefaultScreen)(display);
+            visual = (lib.XDefaultVisual)(display, screen);
+            depth = (lib.XDefaultDepth)(display, screen);
+            let _ = transparency;
+
+"#;
+
+const MINIFB_NO_GC: &str = "            let gc = std::ptr::null_mut();\n\n";
+
+const MINIFB_NO_CONTEXT: &str = "            let context = 0;\n\n";
+
+const GET_POSITION: &str = "    #[inline]\n    pub fn get_position";
+
+const GET_SIZE: &str = "    #[inline]\n    pub fn get_size";
 
 const MINIFB_PACE: &str = r#"        if let Some(target_rate) = self.target_rate {
             unsafe { libc::usleep(target_rate.as_micros() as u32) };
