@@ -154,10 +154,13 @@ fn named_in_the_manifest() -> Vec<String> {
         names.map(|name| name.trim_matches('"').trim_start_matches("luc-core/").to_owned()).collect()
     };
     let mut names = list("luc-core = { workspace", "features = [");
-    if cfg!(feature = "smoke") {
-        names.extend(list("smoke = [", "["));
+    for (has, part) in [(cfg!(feature = "smoke"), "smoke = ["), (cfg!(feature = "cost"), "cost = [")] {
+        if has {
+            names.extend(list(part, "["));
+        }
     }
     names.sort();
+    names.dedup();
     names
 }
 

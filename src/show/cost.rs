@@ -22,8 +22,8 @@ const X: [Key; 3] = [key(0.0, 0.9, Ease::Smooth), key(8.0, -0.4, Ease::Smooth), 
 /// How far it leans, half widths per half height.
 const SLANT: f32 = 0.056;
 
-/// What the figures count, left and right.
-pub const CAPTIONS: [&[u8]; 2] = [b"RAYS TRACED", b"RAYS SAMPLED"];
+/// What the figures count, left and right, with the place for the error.
+pub const CAPTIONS: [&[u8]; 2] = [b"RAYS TRACED", b"RAYS SAMPLED  0,0 dB"];
 
 static STILL: Still = Still {
     stops: &[
@@ -68,29 +68,14 @@ static STILL: Still = Still {
     ..Still::NOTHING
 };
 
-/// A number as words, in groups of three digits.
-fn digits(mut n: u64) -> [u8; 16] {
-    let mut words = [b' '; 16];
-    for i in (0..16).rev() {
-        if i % 4 != 0 && (n > 0 || i == 15) {
-            words[i] = b'0' + (n % 10) as u8;
+/// Writes a number, digit by digit from the right; every fourth place stays as it is.
+fn digits(words: &mut [u8], mut n: u64) {
+    for (i, word) in words.iter_mut().rev().enumerate() {
+        if i % 4 != 3 && (n > 0 || i == 0) {
+            *word = b'0' + (n % 10) as u8;
             n /= 10;
         }
     }
-    words
-}
-
-/// The words of one side.
-fn label(side: usize, figures: &Figures) -> (Vec<u8>, Vec<u8>) {
-    let number = digits(figures.rays[side]).trim_ascii_start().to_vec();
-    let mut caption = CAPTIONS[side].to_vec();
-    if side == 1 {
-        // -10 log10 of the error, in tenths; nothing is better than 99.9.
-        let tenths = (-30.103 * log2(figures.error.max(1e-12))).clamp(0.0, 999.0) as u64;
-        let last = digits(tenths);
-        caption.extend([b' ', last[13], last[14], b',', last[15], b' ', b'd', b'B']);
-    }
-    (number, caption)
 }
 
 /// The figures under the picture, and the line.
@@ -104,35 +89,36 @@ fn titles(figures: &Figures) -> Scene {
     let height = figures.height;
     let split = &figures.split;
     let at = |y: f32| v(split.x + split.slant * y, height * y, -1.0);
-    let mut line = |width: f32, colour: Vec3| {
-        scene.beams.push(Beam {
-            from: at(1.2),
-            to: at(-1.2),
-            width,
-            colour: colour * split.light,
-            fade: 0.0,
-        });
-    };
-    line(0.0036, v(3.3, 2.4, 1.35));
-    line(0.03, v(0.3, 0.16, 0.08));
+    for (width, colour) in [(0.0036, v(3.3, 2.4, 1.35)), (0.03, v(0.3, 0.16, 0.08))] {
+        let colour = colour * split.light;
+        scene.beams.push(Beam { from: at(1.2), to: at(-1.2), width, colour, fade: 0.0 });
+    }
 
+    let ([mut left, mut right], mut sampled) = ([[b' '; 15]; 2], [b' '; 20]);
+    digits(&mut left, figures.rays[0]);
+    digits(&mut right, figures.rays[1]);
+    // -10 log10 of the error, in tenths before and after the point; nothing is better than 99.9.
+    let tenths = (-30.103 * log2(figures.error.max(1e-12))).clamp(0.0, 999.0) as u64;
+    sampled.copy_from_slice(CAPTIONS[1]);
+    digits(&mut sampled[13..15], tenths / 10);
+    digits(&mut sampled[16..17], tenths % 10);
     // Half of the height, or what it would be in a less high picture of this width.
     let unit = height.min(0.5625);
-    let colours = [[v(0.95, 0.9, 1.0), v(0.42, 0.38, 0.62)], [v(2.0, 1.05, 0.34), v(0.85, 0.46, 0.2)]];
-    for (side, [bright, dim]) in colours.into_iter().enumerate() {
-        let (number, caption) = label(side, figures);
-        let x = [-0.9, 0.07][side];
-        for (words, y, step, colour) in [(&number, 0.25, 0.034, bright), (&caption, 0.1, 0.02, dim)] {
-            let line = Line {
-                words,
-                origin: v(x, unit * y - height, -1.0),
-                right: unit * step * 0.85,
-                up: Vec3::Y * (unit * step),
-                width: unit * step * 0.24,
-                colour: colour * 2.5,
-            };
-            write(&mut scene.beams, &line, Vec3::ZERO, 99.0);
-        }
+    for (words, x, y, step, colour) in [
+        (left.trim_ascii_start(), -0.9, 0.25, 0.034, v(2.4, 2.2, 2.5)),
+        (CAPTIONS[0], -0.9, 0.1, 0.02, v(1.0, 0.9, 1.5)),
+        (right.trim_ascii_start(), 0.07, 0.25, 0.034, v(5.0, 2.6, 0.85)),
+        (&sampled, 0.07, 0.1, 0.02, v(2.1, 1.15, 0.5)),
+    ] {
+        let line = Line {
+            words,
+            origin: v(x, unit * y - height, -1.0),
+            right: unit * step * 0.85,
+            up: v(0.0, unit * step, 0.0),
+            width: unit * step * 0.24,
+            colour,
+        };
+        write(&mut scene.beams, &line, Vec3::ZERO, 99.0);
     }
     scene
 }
@@ -158,4 +144,39 @@ pub fn scene(frame: u64) -> Scene {
     let light = 1.0 + pulse(&KICK, frame, 6.0);
     s.split = Some(Split { x, slant: SLANT, light, titles });
     s
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_stand_in_groups_of_three() {
+        for (n, expected) in
+            [(0, "0"), (7, "7"), (1000, "1 000"), (12_345_678, "12 345 678"), (100_000_000, "100 000 000")]
+        {
+            let mut words = [b' '; 15];
+            digits(&mut words, n);
+            assert_eq!(String::from_utf8_lossy(words.trim_ascii_start()), expected);
+        }
+    }
+
+    /// At any shape of the picture, with as many rays as at 8K.
+    #[test]
+    fn no_letter_is_cut_off_or_touches_the_other_side() {
+        for (w, h) in [(16.0, 9.0), (16.0, 10.0), (4.0, 3.0), (21.0, 9.0), (1.0, 1.0), (32.0, 9.0)] {
+            let split = Split { x: 0.0, slant: SLANT, light: 1.0, titles };
+            let height = h / w;
+            for error in [0.0, 1e-5, 1.0] {
+                let scene = titles(&Figures { split, height, rays: [88_888_888; 2], error });
+                for beam in &scene.beams[2..] {
+                    for p in [beam.from, beam.to] {
+                        let reach = Beam::END * beam.width;
+                        let inside = p.x.abs() + reach < 0.97 && p.y.abs() + reach < 0.99 * height;
+                        assert!(inside && (p.x.abs() > reach), "{w}:{h}: {p} of a letter");
+                    }
+                }
+            }
+        }
+    }
 }

@@ -10,7 +10,7 @@ use std::path::PathBuf;
 pub const SIZE: (u32, u32) = (320, 180);
 
 /// Part and local frame of the kept pictures.
-pub const FRAMES: [(&str, u64); 27] = [
+pub const FRAMES: [(&str, u64); 29] = [
     ("blobs", 0),     // the drop: the lattice closed
     ("blobs", 400),   // satellites fly
     ("blobs", 1199),  // last frame
@@ -37,6 +37,8 @@ pub const FRAMES: [(&str, u64); 27] = [
     ("end", 320),     // all words
     ("end", 479),     // last frame, which Lúč's first follows
     ("smoke", 0),     // the house before the fire
+    ("cost", 0),      // first frame: nearly all traced
+    ("cost", 719),    // last frame: half and half
     ("smoke", 421),   // between two steps: the first smoke
 ];
 
@@ -44,7 +46,7 @@ pub const FRAMES: [(&str, u64); 27] = [
 pub type Frame = (&'static str, u64, &'static str, (u32, u32));
 
 /// Frames whose fingerprints are kept.
-pub const FINGERPRINTS: [Frame; 28] = [
+pub const FINGERPRINTS: [Frame; 32] = [
     ("blobs", 12, "draft", (333, 187)),
     ("blobs", 700, "medium", (320, 180)),
     ("blobs", 950, "ultra", (320, 180)),
@@ -69,6 +71,10 @@ pub const FINGERPRINTS: [Frame; 28] = [
     ("facets", 480, "medium", (320, 180)),
     ("facets", 900, "ultra", (320, 180)),
     ("facets", 1200, "reference", (96, 54)),
+    ("cost", 100, "draft", (333, 187)),
+    ("cost", 300, "medium", (320, 180)),
+    ("cost", 480, "ultra", (320, 180)),
+    ("cost", 600, "reference", (96, 54)),
     ("smoke", 300, "ultra", (320, 180)),
     ("smoke", 420, "reference", (96, 54)),
     ("smoke", 700, "medium", (320, 180)),
@@ -77,11 +83,11 @@ pub const FINGERPRINTS: [Frame; 28] = [
 
 /// Whether a part is in the 64 kB file too.
 pub fn in_every_build(part: &str) -> bool {
-    part != "smoke"
+    !["smoke", "cost"].contains(&part)
 }
 
 /// Part and local frame of those whose value is kept for all builds, in `values.txt`.
-pub const VALUES: [(&str, u64); 17] = [
+pub const VALUES: [(&str, u64); 18] = [
     ("blobs", 200),
     ("blobs", 600),
     ("blobs", 1000),
@@ -98,6 +104,7 @@ pub const VALUES: [(&str, u64); 17] = [
     ("facets", 720),
     ("facets", 1260),
     ("end", 240),
+    ("cost", 400),
     ("smoke", 180),
 ];
 

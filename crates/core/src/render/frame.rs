@@ -147,6 +147,7 @@ impl Renderer {
             let height = height as f32 / width as f32;
             (split.titles)(&Figures { split, height, rays: ledger.rays, error: ledger.error() })
         });
+        let titles = titles.filter(|titles| !titles.beams.is_empty());
         let titles = titles.as_ref().map(|titles| Stage::new(titles, quality, width, height));
         if let Some(titles) = &titles {
             pool.run(titles, bare_beams, &mut self.tiles, &mut self.counters);

@@ -49,7 +49,7 @@ impl View {
     /// Draws frame `n` of a scene as 0RGB rows into `pixels`; `n` as for [`Renderer::frame`].
     pub fn draw(self, scene: &Scene, n: u64, size: (u32, u32), quality: &Quality, pixels: &mut [u32]) {
         if self == View::Sampling {
-            let scene = Scene { overlay: 1.0, ..scene.clone() };
+            let scene = Scene { overlay: 1.0, effects: Vec::new(), ..scene.clone() };
             return Renderer::default().frame(&scene, n, size, quality, pixels);
         }
         let stage = &Stage::new(scene, quality, size.0, size.1);

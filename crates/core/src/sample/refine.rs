@@ -17,11 +17,9 @@ use super::wave::{Position, Scratch, trace};
 use crate::counters::{Counter, Counters};
 use crate::cull::{Bounds, Region, may_cover, occluders};
 use crate::features;
-use crate::math::hash::hash2;
 use crate::math::lanes::F;
 use crate::quality::Rung;
 use crate::render::Stage;
-use crate::scene::Split;
 use crate::shade::MAX_LAMPS;
 use crate::trace::{BLOCKED, Shape};
 use glam::{Vec2, Vec3};
@@ -155,7 +153,7 @@ fn refine_side(
     tile.rays[side] = scratch.counters.rays() - before;
 }
 
-/// Holds pixels right of the line that have no ray of their own against one: one in so many, by a hash.
+/// Holds the pixels right of the line that have no ray of their own against one.
 fn measure(
     stage: &Stage,
     scratch: &mut Scratch,
@@ -167,7 +165,7 @@ fn measure(
     let (mut pixels, mut positions) = (Vec::new(), Vec::new());
     for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
         let (px, py) = (corner.0 + x, corner.1 + y);
-        if stage.side(px, py) == 1 && hash2(px as u32, py as u32).is_multiple_of(Split::MEASURED) {
+        if stage.side(px, py) == 1 {
             tile.measured[0] += 1.0;
             if tile.record[y * TILE + x].kind() != Kind::Traced {
                 pixels.push(tile.get(x, y));
