@@ -13,9 +13,9 @@
 mod picture;
 
 use criterion::{BenchmarkId, Criterion};
-use glam::Vec3;
 use luc::show;
 use luc_core::counters::{Counter, Counters};
+use luc_core::math::Vec3;
 use luc_core::quality::Quality;
 use luc_core::render::Renderer;
 use luc_core::scene::*;

@@ -1,7 +1,7 @@
 //! Small lights in great number: culling changes no byte, and light ends where it should.
 
-use glam::Vec3;
 use luc_core::counters::Counter;
+use luc_core::math::Vec3;
 use luc_core::math::hash::{hash2, unit};
 use luc_core::plan::{Plan, warnings};
 use luc_core::quality::Quality;

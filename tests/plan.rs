@@ -69,7 +69,7 @@ fn every_part_does_what_its_plan_names_and_nothing_else() {
 #[test]
 fn a_scene_of_one_ball_calls_for_little() {
     let scene = Scene {
-        spheres: vec![Sphere { centre: glam::Vec3::ZERO, radius: 1.0, material: 0, blend: 0.0 }],
+        spheres: vec![Sphere { centre: luc_core::math::Vec3::ZERO, radius: 1.0, material: 0, blend: 0.0 }],
         materials: vec![Material::default()],
         ..Scene::default()
     };
@@ -83,14 +83,14 @@ fn a_scene_of_one_ball_calls_for_little() {
 
 #[test]
 fn each_effect_runs_as_often_as_it_is_called_for() {
-    let colour = glam::Vec3::new(1.0, 0.5, 0.2);
+    let colour = luc_core::math::Vec3::new(1.0, 0.5, 0.2);
     let kinds = [
         Kind::Contrast(1.5),
         Kind::Tint { colour, strength: 0.5 },
         Kind::Bloom { threshold: 0.5, intensity: 0.5 },
         Kind::WideBloom { threshold: 0.5, intensity: 0.5, octaves: 3 },
         Kind::Sharpness(1.0),
-        Kind::Levels(glam::Vec3::splat(4.0)),
+        Kind::Levels(luc_core::math::Vec3::splat(4.0)),
         Kind::Fringes(0.01),
         Kind::Edges { strength: 2.0, colour },
         Kind::Lighten(-0.5),

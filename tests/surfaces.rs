@@ -1,8 +1,8 @@
 //! Surfaces under GGX as whole pictures: relief in mirrors, rough mirrors, bounces of diffuse light.
 mod support;
 
-use glam::Vec3;
 use luc_core::counters::Counter;
+use luc_core::math::Vec3;
 use luc_core::plan::Plan;
 use luc_core::quality::Quality;
 use luc_core::render::{Renderer, Stage};

@@ -1,8 +1,8 @@
 //! Views instead of light: each pixel shows what its ray met, in the units that are stated.
 mod support;
 
-use glam::Vec3;
 use luc::show;
+use luc_core::math::Vec3;
 use luc_core::quality::Quality;
 use luc_core::render::{FARTHEST, MOST_STEPS, Renderer, Stage, View};
 use luc_core::scene::*;

@@ -3,8 +3,8 @@
 use super::paint::{degrees, key, metal, seconds, swing, times, v};
 use super::score;
 use super::still::{Panel, Still};
-use glam::{Mat3, Vec3};
 use luc_core::math::scalar::exp;
+use luc_core::math::{Mat3, Vec3};
 use luc_core::scene::*;
 use luc_core::synth::track::{Strikes, pulse, strikes};
 

@@ -6,7 +6,7 @@
 use super::luc::{self, at};
 use super::paint::{key, seconds, times, v};
 use super::text::{Line, write};
-use glam::Vec3;
+use luc_core::math::Vec3;
 use luc_core::scene::*;
 
 /// Share of the way back to the first frame, over seconds.

@@ -6,9 +6,9 @@
 use super::paint::{bumps, degrees, key, polished, seconds, surface, times, v};
 use super::score;
 use super::still::{Lamp, Still};
-use glam::{Mat3, Vec3};
 use luc_core::math::hash::{hash2, unit};
 use luc_core::math::scalar::sin_cos;
+use luc_core::math::{Mat3, Vec3};
 use luc_core::mesh::{Assembly, Instance, Mesh, lathe};
 use luc_core::scene::*;
 use luc_core::synth::track::{Strikes, pulse, strikes};
@@ -196,7 +196,7 @@ pub fn cathedral(t: f32, bays: usize, rose: bool) -> Assembly {
             let size = growth(t - began - delay);
             if size > 0.02 {
                 let origin = v(side * SIDE, from * (1.0 - size), 4.0 - BAY * bay as f32);
-                let mirrored = Mat3::from_diagonal(v(side, 1.0, way) * size);
+                let mirrored = Mat3::from_diagonal((v(side, 1.0, way) * size).into());
                 let grown = if i == FOOT { mirrored * turned } else { mirrored };
                 instances.push(Instance::new(mesh, grown, origin, material));
             }

@@ -4,8 +4,8 @@
 use super::paint::{degrees, glass, key, metal, orbit, polished, seconds, swing, times, v};
 use super::score;
 use super::still::{Lamp, Panel, Still};
-use glam::{Mat3, Vec3};
 use luc_core::math::scalar::sin_cos;
+use luc_core::math::{Mat3, Vec3};
 use luc_core::scene::*;
 use luc_core::synth::track::{Strikes, pulse, strikes};
 

@@ -4,7 +4,7 @@ use super::paint::{degrees, key, metal, polished, seconds, swing, times, v};
 use super::score;
 use super::still::{Lamp, Panel, Still};
 use super::text::{Line, write};
-use glam::{Mat3, Vec3};
+use luc_core::math::{Mat3, Vec3};
 use luc_core::scene::*;
 use luc_core::synth::track::{Strikes, frame_of, pulse, strikes};
 

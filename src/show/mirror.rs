@@ -7,7 +7,7 @@
 use super::paint::{degrees, glass, grain, key, metal, orbit, polished, seconds, swing, times, v};
 use super::score;
 use super::still::{Lamp, Panel, Still};
-use glam::Vec3;
+use luc_core::math::Vec3;
 use luc_core::scene::*;
 use luc_core::synth::track::{Strikes, pulse, strikes};
 

@@ -69,6 +69,9 @@ pub const PARTS: &[Part] = &[
     part("end", &score::END, end::scene),
 ];
 
+/// Parts that are here by a feature of their own, with their names.
+pub const OPTIONAL: &[&str] = &["smoke", "cost"];
+
 /// Length of the whole show in frames; frame n is frame n mod this.
 pub const FRAMES: u64 = {
     let (mut sum, mut part) = (0, 0);

@@ -1,6 +1,6 @@
 //! Short forms that the scenes share: motion in seconds, colours, materials.
 
-use glam::Vec3;
+use luc_core::math::Vec3;
 use luc_core::math::scalar::{sin, sin_cos};
 use luc_core::scene::{Ease, Key, Material, Texture};
 use std::f32::consts::{PI, TAU};
@@ -19,7 +19,8 @@ pub const fn v(x: f32, y: f32, z: f32) -> Vec3 {
 
 /// A colour times a strength.
 pub const fn times(c: Vec3, k: f32) -> Vec3 {
-    v(c.x * k, c.y * k, c.z * k)
+    let [x, y, z] = c.to_array();
+    v(x * k, y * k, z * k)
 }
 
 /// sin(2 pi (t / period + phase)): a swing that takes `period` seconds.
@@ -57,7 +58,8 @@ pub const fn polished(colour: Vec3, roughness: f32, ior: f32) -> Material {
 /// index 1.45 by the rest. Nothing is traced for its mirror; set `reflection` to trace it.
 pub const fn surface(colour: Vec3, roughness: f32, metallic: f32) -> Material {
     let rest = 0.034 * (1.0 - metallic);
-    let f0 = v(rest + colour.x * metallic, rest + colour.y * metallic, rest + colour.z * metallic);
+    let [red, green, blue] = colour.to_array();
+    let f0 = v(rest + red * metallic, rest + green * metallic, rest + blue * metallic);
     Material { colour, diffuse: 1.0 - metallic, specular: Vec3::ONE, f0, roughness, ..Material::DEFAULT }
 }
 

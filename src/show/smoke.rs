@@ -3,7 +3,7 @@
 
 use super::paint::{degrees, key, orbit, seconds, surface, swing, times, v};
 use super::still::{Lamp, Still};
-use glam::Vec3;
+use luc_core::math::Vec3;
 use luc_core::math::hash::{hash2, mix, unit};
 use luc_core::scene::*;
 

@@ -1,7 +1,7 @@
 //! What of a part stands still, as a table: numbers in a table pack in half the bytes of code that
 //! writes them. For each frame a scene is made of the table, and the part puts what moves in place.
 
-use glam::Vec3;
+use luc_core::math::Vec3;
 use luc_core::scene::*;
 
 /// The still of a part. What it doesn't name is as in [`Still::NOTHING`].

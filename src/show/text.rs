@@ -4,7 +4,7 @@
 //! lines of a pen. A beam looks the brighter the more one looks along it; its colour makes up for that,
 //! so that words that lie on a floor are as even as words that stand.
 
-use glam::Vec3;
+use luc_core::math::Vec3;
 use luc_core::scene::Beam;
 
 /// After each space a letter's name, and the points of its lines, x and y; a comma lifts the pen, but as a name

@@ -1,6 +1,6 @@
 //! Small bright things that cross the picture, to see whether any frame loses one.
 
-use glam::{Mat3, Vec3};
+use luc_core::math::{Mat3, Vec3};
 use luc_core::mesh::{Assembly, Instance, Mesh, lathe};
 use luc_core::scene::*;
 use std::sync::Arc;
@@ -139,7 +139,7 @@ pub fn scene(thing: Thing, backdrop: Backdrop, frame: u32, with_thing: bool) -> 
 /// One mesh, scaled and moved, of material 0.
 fn place(triangles: Vec<[Vec3; 3]>, scale: f32, at: Vec3) -> Assembly {
     let mesh = Arc::new(Mesh::flat(triangles));
-    Assembly::new(vec![Instance::new(&mesh, Mat3::from_diagonal(Vec3::splat(scale)), at, 0)])
+    Assembly::new(vec![Instance::new(&mesh, Mat3::from_diagonal(Vec3::splat(scale).into()), at, 0)])
 }
 
 /// Where the backdrop lies in a direction from the eye.

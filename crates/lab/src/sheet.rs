@@ -140,7 +140,7 @@ fn jumps(cameras: &[Camera]) -> impl Iterator<Item = u64> + use<> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::Vec3;
+    use luc_core::math::Vec3;
 
     #[test]
     fn a_jump_is_found_and_a_fast_flight_is_none() {

@@ -1,8 +1,8 @@
 //! What smoke costs: its motion, its light, and what it adds to a frame.
 
-use glam::Vec3;
 use luc::show;
 use luc_core::counters::{Counter, Counters};
+use luc_core::math::Vec3;
 use luc_core::quality::Quality;
 use luc_core::render::{Renderer, Stage};
 use luc_core::scene::{Air, Edit, Scene, Smoke, Voxels};

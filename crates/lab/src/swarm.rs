@@ -1,8 +1,8 @@
 //! The scene by which small lights are measured: a river of fireflies over hills by night.
 
-use glam::{Mat3, Vec3};
 use luc_core::math::hash::{hash2, unit};
 use luc_core::math::scalar::{cos, pow, sin};
+use luc_core::math::{Mat3, Vec3};
 use luc_core::mesh::{Assembly, Instance, Mesh};
 use luc_core::scene::{Camera, Emitter, Material, PointLight, Scene, Shading};
 use std::f32::consts::TAU;

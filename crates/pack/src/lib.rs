@@ -9,13 +9,15 @@
 //! - [`encode`] compresses: context mixing ([`codec::model`], [`codec::cm`]), or LZMA
 //!   ([`codec::lzma`]), each decoded by the same source in the launcher.
 //! - [`pack_elf`] puts it together.
-//! - [`size_build`] is what `cargo pack` does before: builds the intro for size.
+//! - [`size_build`] is what `cargo pack` does before: builds the intro for size; [`release`] what it can do after.
 
 pub mod check;
 pub mod codec;
 mod elf;
 pub mod encode;
 mod error;
+pub mod machinery;
+pub mod release;
 pub mod report;
 mod sections;
 pub mod size_build;

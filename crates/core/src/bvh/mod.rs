@@ -11,8 +11,8 @@ mod walk;
 
 pub use walk::Stack;
 
+use crate::math::Vec3;
 use crate::math::lanes::{F, LANES};
-use glam::Vec3;
 
 /// Items a leaf may hold.
 pub const LEAF: usize = 4;

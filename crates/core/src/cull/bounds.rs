@@ -1,7 +1,7 @@
 //! The box around points that come eight at a time.
 
+use crate::math::Vec3;
 use crate::math::lanes::{F, V3};
-use glam::Vec3;
 
 /// Least and greatest coordinates, lane by lane.
 #[derive(Clone, Copy)]

@@ -7,9 +7,10 @@
 //! cell; for other shapes their least depth anywhere.
 
 use super::dop::nearest_in_cone;
+use crate::math::Vec3;
 use crate::render::Stage;
 use crate::trace::Shape;
-use glam::{Vec2, Vec3};
+use glam::Vec2;
 
 /// Whether shape `index` may cover part of the cell around `centre` with half sides `half` (on
 /// the plane one unit ahead), whose corners, in reading order, are at `depths`.
@@ -25,7 +26,7 @@ pub fn may_cover(stage: &Stage, index: usize, centre: Vec2, half: Vec2, depths: 
             let signs =
                 [Vec2::new(-1.0, 1.0), Vec2::new(1.0, 1.0), Vec2::new(-1.0, -1.0), Vec2::new(1.0, -1.0)];
             signs.into_iter().zip(depths).any(|(sign, &depth)| {
-                let d: Vec3 = (centre + sign * half).extend(1.0);
+                let d: Vec3 = (centre + sign * half).extend(1.0).into();
                 n.dot(d) / height * depth > 1.000_01
             })
         }
@@ -37,7 +38,7 @@ pub fn may_cover(stage: &Stage, index: usize, centre: Vec2, half: Vec2, depths: 
 #[inline(never)]
 pub fn ball_may_cover(c: Vec3, radius: f32, centre: Vec2, half: Vec2, deepest: f32) -> bool {
     let reach = half.length();
-    let front = nearest_in_cone(c, radius, centre.extend(1.0).normalize(), reach);
+    let front = nearest_in_cone(c, radius, Vec3::from(centre.extend(1.0)).normalize(), reach);
     let widest = centre.length() + reach;
     front / (1.0 + widest * widest).sqrt() < deepest * 1.000_01
 }

@@ -8,9 +8,10 @@
 
 use crate::features;
 use crate::math::lanes::{F, splat};
+use crate::math::{Mat3, Vec3};
 use crate::scene::{Beam, Scene};
 use crate::trace::Shape;
-use glam::{Mat3, Vec2, Vec3};
+use glam::Vec2;
 
 /// Cosine and sine of k * 22.5°, k = 0..8.
 const COS: [f32; 8] =
@@ -188,7 +189,7 @@ impl Dop {
         };
         // The hull's long sides run about from rim to rim, where it is widest across the axis.
         let along = flat(b) - flat(a);
-        let side = view.world_from_view * along.perp().normalize_or(Vec2::X).extend(0.0);
+        let side = view.world_from_view * Vec3::from(along.perp().normalize_or(Vec2::X).extend(0.0));
         let edge = |sign: f32| flat(b + side * (rb * sign)) - flat(a + side * (ra * sign));
         Dop::hull(Dop::with_edges(along, [edge(1.0), edge(-1.0)]), 32, &point)
     }

@@ -5,8 +5,9 @@
 
 use super::cover::ball_may_cover;
 use super::dop::{Dop, View};
+use crate::math::Vec3;
 use crate::scene::Scene;
-use glam::{Vec2, Vec3};
+use glam::Vec2;
 
 /// A finite body of a field as the eye sees it.
 #[derive(Clone, Copy, Debug)]

@@ -4,10 +4,10 @@
 //! A shape whose bound misses the bound of the points can't shadow any of them.
 
 use super::dop::{Dop, View, nearest_in_cone};
+use crate::math::Vec3;
 use crate::scene::{Field, Scene};
 use crate::shade::Lamp;
 use crate::trace::Shape;
-use glam::Vec3;
 
 /// A shape as the lamp sees it.
 #[derive(Clone, Copy, Debug)]

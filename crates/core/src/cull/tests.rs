@@ -6,6 +6,7 @@
 use super::dop::nearest_in_cone;
 use super::*;
 use crate::counters::Counters;
+use crate::math::Vec3;
 use crate::math::lanes::{F, V3};
 use crate::quality::Quality;
 use crate::scene::{
@@ -14,7 +15,7 @@ use crate::scene::{
 use crate::shade::lamps;
 use crate::trace::check::{Random, packet};
 use crate::trace::{Rays8, nearest, surface};
-use glam::{Vec2, Vec3};
+use glam::Vec2;
 
 const KINDS: [&str; 8] =
     ["sphere", "plane", "cylinder", "infinite cylinder", "cone", "infinite cone", "triangle", "field"];

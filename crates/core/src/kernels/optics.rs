@@ -33,5 +33,5 @@ pub fn is_total(cos: f32, n_i: f32, n_t: f32) -> bool {
 pub fn refract(d: Vec3, n: Vec3, eta: f32) -> Option<Vec3> {
     let (d, n) = (V3::splat(d), V3::splat(n));
     let found = shade::refract(n, d, -d.dot(n), splat(eta));
-    (first(found.total).to_bits() == 0).then(|| found.direction.lane(0))
+    (first(found.total).to_bits() == 0).then(|| found.direction.lane(0).into())
 }

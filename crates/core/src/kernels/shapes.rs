@@ -65,13 +65,13 @@ fn ahead(span: &Span) -> Option<Crossing> {
 
 /// Sphere of a radius over 0. Score at most 4. Haines, Günther and Akenine-Möller, Ray Tracing Gems ch. 7.
 pub fn sphere(ray: &Ray, centre: Vec3, radius: f32) -> Option<Crossing> {
-    ahead(&trace::sphere(&ray.packet(), &Sphere { centre, radius, material: 0, blend: 0.0 }))
+    ahead(&trace::sphere(&ray.packet(), &Sphere { centre: centre.into(), radius, material: 0, blend: 0.0 }))
 }
 
 /// Plane through `point` with this unit normal, from either side; a ray in the plane misses it. Score at
 /// most 4.
 pub fn plane(ray: &Ray, point: Vec3, normal: Vec3) -> Option<f32> {
-    let plane = Plane { point, normal, reach: f32::INFINITY, material: 0 };
+    let plane = Plane { point: point.into(), normal: normal.into(), reach: f32::INFINITY, material: 0 };
     ahead(&trace::plane(&ray.packet(), &plane)).map(|c| c.enter)
 }
 
@@ -82,25 +82,34 @@ pub fn cylinder(ray: &Ray, point: Vec3, axis: Vec3, radius: f32) -> Option<Cross
 
 /// Closed bar from `base`, the middle of its first cap, along the unit vector `axis`. Score at most 4.
 pub fn capped_cylinder(ray: &Ray, base: Vec3, axis: Vec3, radius: f32, length: f32) -> Option<Crossing> {
-    ahead(&trace::cylinder(&ray.packet(), &Cylinder { base, axis, radius, length, material: 0 }))
+    ahead(&trace::cylinder(
+        &ray.packet(),
+        &Cylinder { base: base.into(), axis: axis.into(), radius, length, material: 0 },
+    ))
 }
 
 /// Single cone without end from `apex` along the unit vector `axis`; `slope` is the tangent of its half angle.
 /// Score at most 4.
 pub fn cone(ray: &Ray, apex: Vec3, axis: Vec3, slope: f32) -> Option<Crossing> {
     let range = [0.0, f32::INFINITY];
-    ahead(&trace::cone(&ray.packet(), &Cone { apex, axis, slope, range, caps: [false; 2], material: 0 }))
+    ahead(&trace::cone(
+        &ray.packet(),
+        &Cone { apex: apex.into(), axis: axis.into(), slope, range, caps: [false; 2], material: 0 },
+    ))
 }
 
 /// Closed cone or frustum: the same between two heights over the apex. Score at most 4.
 pub fn capped_cone(ray: &Ray, apex: Vec3, axis: Vec3, slope: f32, range: [f32; 2]) -> Option<Crossing> {
-    ahead(&trace::cone(&ray.packet(), &Cone { apex, axis, slope, range, caps: [true; 2], material: 0 }))
+    ahead(&trace::cone(
+        &ray.packet(),
+        &Cone { apex: apex.into(), axis: axis.into(), slope, range, caps: [true; 2], material: 0 },
+    ))
 }
 
 /// Triangle, from either side; meshes of them have no leaks. Score at most 4. Woop, Benthin and Wald 2013.
 pub fn triangle(ray: &Ray, corners: [Vec3; 3]) -> Option<TriangleHit> {
     let rays = ray.packet();
-    let span = trace::triangle(&rays, &Triangle { corners, material: 0 });
+    let span = trace::triangle(&rays, &Triangle { corners: corners.map(Into::into), material: 0 });
     let t = ahead(&span)?.enter;
     let crossing = Aim::new(&rays).cross(&corners.map(V3::splat));
     Some(TriangleHit { t, weights: crossing.weights.map(|w| first(w / crossing.sum)) })
@@ -112,7 +121,7 @@ pub fn triangle(ray: &Ray, corners: [Vec3; 3]) -> Option<TriangleHit> {
 /// 3 u of (corner - origin) / direction. To lose no ray that meets an edge, the far one is
 /// taken for 1 + 2 γ₃ as much when the two are compared.
 pub fn slab(ray: &Ray, lo: Vec3, hi: Vec3) -> Option<[f32; 2]> {
-    let (enter, exit) = ray.packet().in_box(lo, hi, splat(f32::INFINITY));
+    let (enter, exit) = ray.packet().in_box(lo.into(), hi.into(), splat(f32::INFINITY));
     let hit = enter.simd_le(exit * splat(1.000_000_4)) & exit.simd_ge(F::ZERO);
     (first(hit).to_bits() != 0).then(|| [first(enter), first(exit)])
 }

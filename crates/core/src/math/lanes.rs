@@ -7,8 +7,8 @@
 //! A *mask* is an [`F`] whose lanes are all ones (true) or all zeros (false), as comparisons return it;
 //! combine masks with `&`, `|`, `^`, `!`.
 
+use crate::math::Vec3;
 use core::ops::{Add, AddAssign, BitAnd, Mul, Neg, Sub, SubAssign};
-use glam::Vec3;
 
 /// Eight f32.
 pub type F = wide::f32x8;
@@ -225,7 +225,8 @@ impl V3 {
 
     /// Eight copies of `v`.
     #[inline(always)]
-    pub fn splat(v: Vec3) -> V3 {
+    pub fn splat(v: impl Into<Vec3>) -> V3 {
+        let v = v.into();
         V3::new(splat(v.x), splat(v.y), splat(v.z))
     }
 

@@ -11,6 +11,12 @@
 //! * [`lanes_fn`]: the elementary functions for eight numbers, in f32.
 //! * [`hash`]: random numbers as a pure function of pixel, frame and dimension.
 
+/// Three of them.
+pub use glam::Mat3A as Mat3;
+/// Three numbers in a register of four: one instruction for three, and 1,880 bytes less in the packed file than
+/// three numbers apart. (glam's, under the name that it has everywhere else.)
+pub use glam::Vec3A as Vec3;
+
 pub mod hash;
 pub mod lanes;
 pub mod lanes_f64;

@@ -47,8 +47,8 @@ pub fn value_noise(p: V3) -> (F, V3) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::Vec3;
     use crate::trace::check::Random;
-    use glam::Vec3;
 
     fn at(x: f32, y: f32, z: f32) -> f32 {
         value_noise(V3::splat(Vec3::new(x, y, z))).0.as_array()[3]

@@ -2,7 +2,7 @@
 //! axes, or begin on the surface.
 
 use super::hash::{hash2, unit};
-use glam::Vec3;
+use crate::math::Vec3;
 
 /// Reproducible random numbers: a counter under a hash.
 pub struct Random(u32, u32);

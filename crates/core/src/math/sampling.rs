@@ -48,8 +48,8 @@ pub fn cosine(n: V3, (u, v): (F, F)) -> V3 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::Vec3;
     use crate::trace::check::Random;
-    use glam::Vec3;
 
     #[test]
     fn bases_are_orthonormal_also_next_to_the_poles() {

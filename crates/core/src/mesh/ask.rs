@@ -3,9 +3,9 @@
 use super::Assembly;
 use crate::bvh::Stack;
 use crate::counters::Counters;
+use crate::math::Vec3;
 use crate::math::lanes::{F, V3, greatest, splat, twice};
 use crate::trace::Rays8;
-use glam::Vec3;
 
 /// The pyramid that four rays from one point span, up to some distance.
 struct Pyramid {

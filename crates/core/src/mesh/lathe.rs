@@ -1,7 +1,7 @@
 //! The body that crystals are made of.
 
+use crate::math::Vec3;
 use crate::math::scalar::sin_cos;
-use glam::Vec3;
 use std::f32::consts::TAU;
 
 /// Appends a body of `sides` flat sides around some points of an axis, with a radius at each; a

@@ -16,8 +16,8 @@ pub use place::{Assembly, Instance};
 
 use crate::bvh::{Bounds, LEAF, Tree};
 use crate::features;
+use crate::math::Vec3;
 use crate::math::lanes::{LANES, V3};
-use glam::Vec3;
 
 /// Triangles with a tree over them.
 #[derive(Clone, Debug, Default)]

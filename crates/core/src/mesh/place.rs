@@ -4,8 +4,8 @@ use super::{Mesh, gather};
 use crate::bvh::{Bounds, Tree};
 use crate::features;
 use crate::math::lanes::{F, V3, splat};
+use crate::math::{Mat3, Vec3};
 use crate::trace::{Aim, Rays8, Span};
-use glam::{Mat3, Vec3};
 use std::sync::Arc;
 
 /// A mesh at a place: `world = world_from_mesh * p + origin`.

@@ -2,13 +2,13 @@
 
 use super::*;
 use crate::counters::Counters;
+use crate::math::Mat3;
 use crate::math::lanes::{F, LANES, TRUE, V3, from_bits, splat};
 use crate::math::scalar::sin_cos;
 use crate::quality::Quality;
 use crate::scene::{Material, Scene, Sphere, Triangle};
 use crate::trace::check::{Random, packet, poisoned};
 use crate::trace::{Aim, BLOCKED, Hits, Rays8, nearest, occlusion, surface};
-use glam::Mat3;
 use std::sync::Arc;
 
 const HIGH: &Quality = &Quality::PRESETS[Quality::DEFAULT].1;

@@ -5,10 +5,10 @@
 //! goes in, so a table of it is exact at its entries. 128 entries per octave, the nearest taken, stay
 //! within 0.001 of it, a quarter of an output step, and the three tables fit the first-level cache.
 
+use crate::math::Vec3;
 use crate::math::lanes::{F, V3, max, splat, splat_u};
 use crate::math::scalar::{pow, srgb_encode};
 use crate::scene::Grade;
-use glam::Vec3;
 
 /// Mantissa bits that choose an entry.
 const FINE: u32 = 7;

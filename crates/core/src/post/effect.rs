@@ -4,11 +4,11 @@
 
 use super::picture::Picture;
 use crate::features::*;
+use crate::math::Vec3;
 use crate::math::hash::{mix_x8, unit_x8};
 use crate::math::lanes::{F, LANE_INDEX, V3, splat, splat_u};
 use crate::sample::{self, TILE, Tile};
 use crate::scene::Kind;
-use glam::Vec3;
 
 /// What an effect may ask for besides the pixels themselves.
 pub struct Around<'a> {

@@ -10,13 +10,13 @@ use super::chain::Chain;
 use super::effect::noise;
 use super::picture::Picture;
 use crate::counters::{Counter, Counters};
+use crate::math::Vec3;
 use crate::math::hash::hash2;
 use crate::math::lanes::{F, RAMP, V3, load, splat, splat_u};
 use crate::render::Stage;
 use crate::sample::{Kind, TILE, Tile};
 use crate::study::Phase;
 use crate::{features, parallel};
-use glam::Vec3;
 
 /// Rows that are finished as one piece of work.
 const ROWS: usize = 16;

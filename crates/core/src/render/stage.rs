@@ -2,6 +2,7 @@
 
 use crate::cull::{Dop, FieldNode, Shaft, View, dops, field_nodes, shafts};
 use crate::features;
+use crate::math::Vec3;
 use crate::math::lanes::{F, V3, splat};
 use crate::post::Display;
 use crate::quality::{Quality, Rung};
@@ -10,7 +11,7 @@ use crate::shade::{Lamp, MAX_LAMPS, Points, lamps};
 use crate::sim::Volume;
 use crate::trace::Shape;
 use core::ops::Range;
-use glam::{Vec2, Vec3};
+use glam::Vec2;
 
 /// A scene, a quality and a size, with all that follows from them.
 pub struct Stage<'a> {
@@ -150,7 +151,7 @@ impl<'a> Stage<'a> {
     /// [`Stage::direction`] for eight positions.
     #[inline(never)]
     pub fn directions(&self, x: F, y: F) -> V3 {
-        let [right, up, forward] = self.view.world_from_view.to_cols_array_2d().map(|c| V3::splat(c.into()));
+        let [right, up, forward] = self.view.world_from_view.to_cols_array_2d().map(V3::splat);
         let pixel = splat(self.pixel);
         let x = (x + splat(self.shift.x) - splat(self.width as f32 * 0.5)) * pixel;
         let y = (splat(self.height as f32 * 0.5) - y - splat(self.shift.y)) * pixel;

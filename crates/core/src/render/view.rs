@@ -5,6 +5,7 @@
 
 use super::{Renderer, Stage};
 use crate::counters::{Counter, Counters};
+use crate::math::Vec3;
 use crate::math::lanes::{F, V3, splat};
 use crate::math::scalar::srgb_encode;
 use crate::parallel;
@@ -12,7 +13,6 @@ use crate::quality::Quality;
 use crate::sample::TILE;
 use crate::scene::{Channel, Scene};
 use crate::trace::{Rays8, nearest, surface};
-use glam::Vec3;
 
 /// What is drawn instead of light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

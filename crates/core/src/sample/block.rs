@@ -1,12 +1,12 @@
 //! What is known of traced samples, in blocks of eight: a packet's results are stored as vectors.
 
+use crate::math::Vec3;
 use crate::math::lanes::{F, U, V3, splat};
 use crate::quality::Rung;
 use crate::render::Stage;
 use crate::scene::{Material, Voxels};
 use crate::shade::Codes;
 use crate::trace::{Shape, relief_within};
-use glam::Vec3;
 
 /// Eight samples that were traced as one packet.
 #[derive(Clone, Copy, Default)]

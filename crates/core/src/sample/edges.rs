@@ -7,9 +7,9 @@
 use super::tile::{Kind, Record, TILE, Tile};
 use super::wave::{Position, Scratch, trace};
 use crate::counters::Counter;
+use crate::math::Vec3;
 use crate::math::sampling::r2;
 use crate::render::Stage;
-use glam::Vec3;
 
 /// Samples that are traced at once: keeps the lists in the cache.
 const BATCH: usize = 1024;

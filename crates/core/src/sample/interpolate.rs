@@ -10,6 +10,7 @@ use super::scatter;
 use super::tile::{Kind, Record, TILE, Tile};
 use super::wave::soft;
 use crate::counters::{Counter, Counters};
+use crate::math::Vec3;
 use crate::math::lanes::{F, LANE_INDEX, U, V3, splat, splat_u};
 use crate::quality::Rung;
 use crate::render::Stage;
@@ -17,7 +18,6 @@ use crate::scene::Channel;
 use crate::shade::{self, Visibility};
 use crate::study::Phase;
 use crate::trace::{NONE, Rays8, surface};
-use glam::Vec3;
 
 /// Half an output step: colours closer than this display the same.
 const SAME: f32 = 0.5 / 255.0;

@@ -17,12 +17,13 @@ use super::wave::{Position, Scratch, trace};
 use crate::counters::{Counter, Counters};
 use crate::cull::{Bounds, Region, may_cover, occluders};
 use crate::features;
+use crate::math::Vec3;
 use crate::math::lanes::F;
 use crate::quality::Rung;
 use crate::render::Stage;
 use crate::shade::MAX_LAMPS;
 use crate::trace::{BLOCKED, Shape};
-use glam::{Vec2, Vec3};
+use glam::Vec2;
 
 /// A square between samples; `x`, `y` from the tile's corner, px.
 #[derive(Clone, Copy)]

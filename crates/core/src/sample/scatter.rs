@@ -141,7 +141,7 @@ pub fn draw(
     for i in 0..count {
         let at = point(packet.seed + splat_u(turn), stage.pattern * count + i);
         let (direction, factor) = if bounce {
-            (cosine(s.normal, at), V3::splat(glam::Vec3::ONE))
+            (cosine(s.normal, at), V3::splat(crate::math::Vec3::ONE))
         } else {
             shade::sample(s, -packet.rays.direction, at)
         };

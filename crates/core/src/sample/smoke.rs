@@ -9,11 +9,12 @@ use super::refine::Cell;
 use super::tile::{GRID, TILE, Tile};
 use super::wave::Scratch;
 use crate::features;
+use crate::math::Vec3;
 use crate::math::lanes::{F, RAMP, V3, splat};
 use crate::render::Stage;
 use crate::sim::Volume;
 use crate::trace::Rays8;
-use glam::{Vec3, Vec4};
+use glam::Vec4;
 
 /// Share of a depth by which it may differ from what its cell's corners say.
 const EVEN: f32 = 0.02;
@@ -109,7 +110,7 @@ fn agree(stage: &Stage, cell: Cell, known: &[Vec4; 5], tile: &Tile) -> bool {
     let [a, b, c, d, middle] = *known;
     let (x, y) = cell.point(4);
     let behind = tile.get(x, y);
-    let over = |smoke: Vec4| stage.display.map(behind * smoke.w + smoke.truncate());
+    let over = |smoke: Vec4| stage.display.map(behind * smoke.w + Vec3::from_vec4(smoke));
     let error = (over((a + b + c + d) * 0.25) - over(middle)).abs().max_element();
     error <= stage.quality.tolerance
 }

@@ -1,7 +1,7 @@
 //! A square of pixels that is sampled as one unit, and how each of its pixels was got.
 
 use crate::counters::Counters;
-use glam::Vec3;
+use crate::math::Vec3;
 
 /// Side of a tile, px.
 pub const TILE: usize = 64;

@@ -10,6 +10,7 @@ use super::scatter::{self, Draw, Way};
 use crate::counters::{Counter, Counters};
 use crate::cull::{Bounds, Region, occluders};
 use crate::features;
+use crate::math::Vec3;
 use crate::math::hash::mix_x8;
 use crate::math::lanes::{F, U, V3, splat};
 use crate::render::Stage;
@@ -17,7 +18,6 @@ use crate::scene::{Channel, Shading};
 use crate::shade::{self, MAX_LAMPS, Visibility};
 use crate::study::Phase;
 use crate::trace::{Hits, NONE, Rays8, nearest, surface};
-use glam::Vec3;
 
 /// Buffers of one thread, reused from tile to tile.
 #[derive(Default)]

@@ -4,7 +4,7 @@
 //! `colour exp(sharpness (d·g - 1))`. Discs are background objects: hit only if nothing else is,
 //! they cast no shadow and light nothing.
 
-use glam::Vec3;
+use crate::math::Vec3;
 
 /// One stop of a gradient; the sky's runs over the height of the direction.
 #[derive(Clone, Copy, Debug, PartialEq)]

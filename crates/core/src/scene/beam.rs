@@ -1,6 +1,6 @@
 //! Light that is seen on its way: beams in thin haze, and round glows where they end.
 
-use glam::Vec3;
+use crate::math::Vec3;
 
 /// Light along a straight line; both ends may be the same, for a round glow.
 ///

@@ -1,7 +1,7 @@
 //! A pinhole camera: position, target, roll and horizontal field of view.
 
 use crate::math::scalar::sin_cos;
-use glam::{Mat3, Vec3};
+use crate::math::{Mat3, Vec3};
 
 /// Where the eye is and what it looks at.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,7 +3,8 @@
 //! They work on display values, after the grade and before vignette and grain; see [`crate::post`].
 
 use crate::counters::Counter;
-use glam::{Vec2, Vec3};
+use crate::math::Vec3;
+use glam::Vec2;
 
 /// What an effect does with a display value v; l is its luminance.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -6,7 +6,7 @@
 //! by at most k where several meet. Operands are joined in list order, as smooth joins are not
 //! associative.
 
-use glam::{Mat3, Vec3};
+use crate::math::{Mat3, Vec3};
 
 /// What a node adds. Sizes are in world units, before [`Node::rounding`] grows them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -112,11 +112,8 @@ impl Node {
 
     /// A box with half sides `half`, its edges rounded with a radius.
     pub const fn cuboid(centre: Vec3, half: Vec3, rounding: f32) -> Self {
-        Self::new(
-            Form::Box(Vec3::new(half.x - rounding, half.y - rounding, half.z - rounding)),
-            rounding,
-            centre,
-        )
+        let [x, y, z] = half.to_array();
+        Self::new(Form::Box(Vec3::new(x - rounding, y - rounding, z - rounding)), rounding, centre)
     }
 
     /// A ball drawn out to both sides along y.

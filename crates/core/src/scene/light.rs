@@ -1,6 +1,6 @@
 //! Lamps and shining rectangles.
 
-use glam::Vec3;
+use crate::math::Vec3;
 
 /// What shape a lamp's light has.
 #[derive(Clone, Copy, Debug, PartialEq)]

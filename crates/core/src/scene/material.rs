@@ -1,7 +1,7 @@
 //! What a shape is made of.
 
 use super::{Stop, Texture};
-use glam::Vec3;
+use crate::math::Vec3;
 
 /// Fire that spreads in a body: light over the distance from where it began, as a share of a
 /// radius.

@@ -33,8 +33,8 @@ pub use texture::{Pattern, Texture};
 pub use track::{Ease, Key, track};
 pub use voxels::{Edit, Voxels};
 
+use crate::math::Vec3;
 use crate::mesh::Assembly;
-use glam::Vec3;
 
 /// How light that arrives directly from a lamp is reflected.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

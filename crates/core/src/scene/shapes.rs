@@ -1,6 +1,6 @@
 //! The analytic shapes. Axes are normalised by the constructors.
 
-use glam::Vec3;
+use crate::math::Vec3;
 
 /// A ball.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,7 +1,7 @@
 //! Smoke: what it is made of and how it moves. What it looks like at a step is found by simulation.
 
 use super::Voxels;
-use glam::Vec3;
+use crate::math::Vec3;
 
 /// How the air moves. Rates are per second, lengths world units; one step takes [`Air::SECONDS`].
 #[derive(Clone, Copy, Debug, PartialEq)]

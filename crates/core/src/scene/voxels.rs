@@ -4,10 +4,10 @@
 //! 4x4x4 cells hold a bit for each solid cell, so a ray asks one word for 64 of them.
 
 use super::Field;
+use crate::math::Vec3;
 use crate::math::hash::{hash2, mix, unit};
 use crate::math::lanes::{F, TRUE, V3, splat};
 use crate::trace::distance;
-use glam::Vec3;
 
 /// A grid of voxels; the cells are kept with the bricks, so they change only by [`Voxels::edit`].
 #[derive(Clone, Debug, Default, PartialEq)]

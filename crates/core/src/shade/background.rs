@@ -56,7 +56,7 @@ pub fn background(sky: &Background, rays: &Rays8, spread: F, soft: F, blind: F) 
 /// the distance), as a rough mirror would.
 #[inline(never)]
 pub fn emitters(list: &[Emitter], rays: &Rays8, spread: F, t: F) -> (V3, F, F) {
-    let mut light = V3::splat(glam::Vec3::ZERO);
+    let mut light = V3::splat(crate::math::Vec3::ZERO);
     let (mut open, mut seen) = (F::ONE, F::ZERO);
     for (k, e) in list.iter().enumerate() {
         let n = V3::splat(e.normal());

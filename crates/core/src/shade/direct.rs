@@ -8,13 +8,13 @@ use super::ggx::ggx;
 use super::lamps::Lamp;
 use crate::counters::{Counter, Counters};
 use crate::features;
+use crate::math::Vec3;
 use crate::math::lanes::{F, V3, splat};
 use crate::math::lanes_fn::{exp, pow};
 use crate::render::Stage;
 use crate::scene::{Channel, Scene, Shading};
 use crate::study::Phase;
 use crate::trace::{BLOCKED, Rays8, Surface, ambient_share, occlusion};
-use glam::Vec3;
 
 /// Lamps that may cast shadows; those after them light without.
 pub const MAX_LAMPS: usize = 8;

@@ -78,7 +78,7 @@ pub fn split(shading: Shading, s: &Surface, d: V3) -> Split {
     let transparent = s.value(Channel::Transparency).simd_gt(F::ZERO);
     let total = total & transparent;
     let schlick_cos = (s.inside & transparent).select(cos_out, cos);
-    let one = V3::splat(glam::Vec3::ONE);
+    let one = V3::splat(crate::math::Vec3::ONE);
     let reflectance =
         V3::select(total, one, schlick(s.colour(Channel::F0), grazing(shading, s), schlick_cos));
 

@@ -1,8 +1,8 @@
 //! Lamps as shading sees them: points, spots and shining rectangles in one form.
 
+use crate::math::Vec3;
 use crate::math::lanes::{F, V3, splat};
 use crate::scene::{LightKind, Material, Scene};
-use glam::Vec3;
 use std::f32::consts::PI;
 
 /// A source of direct light without extent.

@@ -8,9 +8,9 @@
 //! planes through the eye.
 
 use crate::cull::View;
+use crate::math::Vec3;
 use crate::math::lanes::{F, V3, splat};
 use crate::scene::PointLight;
-use glam::Vec3;
 
 /// Small lights of a scene that shine; those after them don't.
 pub const MAX_POINTS: usize = 512;

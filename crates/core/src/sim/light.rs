@@ -9,6 +9,7 @@ use super::Simulation;
 use super::grid::Grid;
 use super::state::{DENSITY, Kind, TEMPERATURE};
 use crate::counters::{Counter, Counters};
+use crate::math::Vec3;
 use crate::math::lanes::{F, RAMP, V3, load, splat};
 use crate::math::scalar;
 use crate::parallel;
@@ -17,7 +18,6 @@ use crate::shade::Lamp;
 use crate::shade::extinction::Depth;
 use crate::shade::phase::phase;
 use crate::trace::Rays8;
-use glam::Vec3;
 
 /// Side of the bricks by which empty space is skipped, cells.
 const BRICK: usize = 4;
@@ -114,7 +114,7 @@ impl Volume {
                 let sigma = density * splat(smoke.extinction);
                 let light = light * V3::splat(smoke.albedo) * sigma;
                 for (i, out) in out.iter_mut().enumerate() {
-                    let Vec3 { x, y, z } = light.lane(i);
+                    let [x, y, z] = light.lane(i).to_array();
                     *out = [sigma.as_array()[i], x, y, z];
                 }
             }

@@ -2,12 +2,12 @@
 //! less divergence with each sweep, the same on any number of threads and by any way to a step.
 
 use super::*;
+use crate::math::Vec3;
 use crate::math::lanes::{F, V3, splat};
 use crate::scene::{Air, Edit, Voxels};
 use crate::shade::lamps;
 use crate::trace::Rays8;
 use crate::trace::check::Random;
-use glam::Vec3;
 
 const SIZE: [usize; 3] = [16, 20, 12];
 

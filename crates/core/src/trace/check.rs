@@ -12,11 +12,12 @@
 //! `{:?}` of an f32 reads back to the same bits, so a printed shape and ray replay a failure.
 
 use super::{Rays8, Span, Surface};
+use crate::math::Vec3;
 use crate::math::lanes::{self, F, V3};
 pub use crate::math::random::Random;
 use crate::math::scalar::sin_cos;
 use crate::scene::Material;
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
 /// Half an ulp of 1.
 pub const U: f64 = 1.0 / 16_777_216.0;

@@ -8,10 +8,10 @@
 
 use super::{Rays8, Span};
 use crate::counters::{Counter, Counters};
+use crate::math::Vec3;
 use crate::math::lanes::{F, INFINITY, TRUE, V3, max, splat};
 use crate::quality::Quality;
 use crate::scene::{Field, Form, Join, Node};
-use glam::Vec3;
 
 /// Per node: the mask of lanes that it matters to, or its share of each lane's surface.
 pub type Nodes = [F; Field::MOST];
@@ -67,12 +67,12 @@ pub fn smooth_min(a: F, b: F, k: f32) -> (F, F) {
 pub fn form(node: &Node, p: V3) -> F {
     let mut p = p - V3::splat(node.centre);
     if let Some(axes) = node.axes {
-        let [x, y, z] = axes.to_cols_array_2d().map(|c| p.dot(V3::splat(c.into())));
+        let [x, y, z] = axes.to_cols_array_2d().map(|c| p.dot(V3::splat(c)));
         p = V3::new(x, y, z);
     }
     let half = match node.form {
         Form::Plane(normal) => return p.dot(V3::splat(normal)) - splat(node.rounding),
-        Form::Box(Vec3::ZERO) => return p.length() - splat(node.rounding),
+        Form::Box(half) if half == Vec3::ZERO => return p.length() - splat(node.rounding),
         Form::Box(half) => half,
         Form::Cross(half) => {
             // The bar along the longest coordinate is the nearest: it is seen in the other two.

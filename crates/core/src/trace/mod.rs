@@ -95,7 +95,7 @@ impl Rays8 {
     /// The slab's near and far planes are chosen by the sign of 1/d, which knows -0 too, and the
     /// bounds only move where a comparison holds, so that 0 · inf = NaN, on a face, changes nothing.
     #[inline(never)]
-    pub fn in_box(&self, lo: glam::Vec3, hi: glam::Vec3, end: F) -> (F, F) {
+    pub fn in_box(&self, lo: crate::math::Vec3, hi: crate::math::Vec3, end: F) -> (F, F) {
         let (lo, hi) = (V3::splat(lo), V3::splat(hi));
         let (mut enter, mut exit) = (F::ZERO, end);
         for (o, d, lo, hi) in [
@@ -116,7 +116,7 @@ impl Rays8 {
     /// Whether some ray's line comes near the ball: a cheap test before an expensive one, which
     /// errs to true by rounding.
     #[inline(always)]
-    pub fn near_ball(&self, centre: glam::Vec3, radius: f32) -> bool {
+    pub fn near_ball(&self, centre: crate::math::Vec3, radius: f32) -> bool {
         let f = self.origin - V3::splat(centre);
         let d = self.direction;
         let nearest = f - d * (f.dot(d) / d.dot(d));

@@ -117,8 +117,8 @@ pub fn scratches(p: V3, n: V3) -> Height {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::Vec3;
     use crate::trace::check::Random;
-    use glam::Vec3;
 
     type Pattern = fn(V3, V3) -> Height;
     const ALL: [(&str, Pattern); 4] = [

@@ -6,7 +6,7 @@ use crate::scene::Stop;
 /// The colour at `x`; that of the first or last stop beyond them, black without any.
 #[inline(never)]
 pub fn ramp(stops: &[Stop], x: F) -> V3 {
-    let mut colour = V3::splat(stops.first().map_or(glam::Vec3::ZERO, |stop| stop.colour));
+    let mut colour = V3::splat(stops.first().map_or(crate::math::Vec3::ZERO, |stop| stop.colour));
     for pair in stops.windows(2) {
         let x = (x - splat(pair[0].y)) * splat(1.0 / (pair[1].y - pair[0].y));
         let change = V3::splat(pair[1].colour) - V3::splat(pair[0].colour);

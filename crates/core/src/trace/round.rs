@@ -31,7 +31,7 @@ struct Axial {
 
 impl Axial {
     #[inline(never)]
-    fn new(rays: &Rays8, reference: glam::Vec3, axis: glam::Vec3) -> Self {
+    fn new(rays: &Rays8, reference: crate::math::Vec3, axis: crate::math::Vec3) -> Self {
         let a = V3::splat(axis);
         let d = rays.direction;
         let f = rays.origin - V3::splat(reference);
@@ -98,7 +98,13 @@ fn clip(ray: &Axial, side: (F, F), hit: F, range: [f32; 2], caps: [bool; 2]) -> 
 
 /// Whether no ray comes near a body with ends at `range` along the axis, nowhere wider than `rim`.
 #[inline(never)]
-fn is_far(rays: &Rays8, reference: glam::Vec3, axis: glam::Vec3, range: [f32; 2], rim: f32) -> bool {
+fn is_far(
+    rays: &Rays8,
+    reference: crate::math::Vec3,
+    axis: crate::math::Vec3,
+    range: [f32; 2],
+    rim: f32,
+) -> bool {
     let half = (range[1] - range[0]) * 0.5;
     let middle = reference + axis * (range[0] + half);
     half < f32::INFINITY && !rays.near_ball(middle, (half * half + rim * rim).sqrt())

@@ -86,7 +86,7 @@ impl Surface {
 type Located = (V3, V3, V3, F);
 
 /// Projects `p` onto the plane through `point` with unit normal `n`.
-fn onto_plane(p: V3, point: glam::Vec3, n: V3) -> Located {
+fn onto_plane(p: V3, point: crate::math::Vec3, n: V3) -> Located {
     let point = V3::splat(point);
     (p - n * n.dot(p - point), n, n, point.max_abs())
 }
@@ -126,18 +126,18 @@ fn locate(scene: &Scene, shape: Shape, part: u32, p: V3) -> Located {
             onto_plane(p, a, n.normalize())
         }
         // Done with all facets of its instance at once.
-        Shape::Facet(..) => onto_plane(p, glam::Vec3::ZERO, p),
+        Shape::Facet(..) => onto_plane(p, crate::math::Vec3::ZERO, p),
         Shape::Cylinder(s) => round(p, s.base, s.axis, (s.radius, 0.0), [0.0, s.length], part),
         Shape::Cone(s) => round(p, s.apex, s.axis, (0.0, s.slope), s.range, part),
-        Shape::Voxels(_) | Shape::Field(_) => onto_plane(p, glam::Vec3::ZERO, V3::ZERO),
+        Shape::Voxels(_) | Shape::Field(_) => onto_plane(p, crate::math::Vec3::ZERO, V3::ZERO),
     }
 }
 
 /// [`locate`] for shapes about an axis: radius is `profile.0 + profile.1 * height`.
 fn round(
     p: V3,
-    reference: glam::Vec3,
-    axis: glam::Vec3,
+    reference: crate::math::Vec3,
+    axis: crate::math::Vec3,
     profile: (f32, f32),
     range: [f32; 2],
     part: u32,
@@ -168,8 +168,8 @@ fn round(
 /// the width of the rays' footprints per unit of distance, which textures are filtered by.
 #[inline(never)]
 pub fn surface(scene: &Scene, quality: &Quality, rays: &Rays8, t: F, id: F, spread: F) -> Surface {
-    let zero = V3::splat(glam::Vec3::ZERO);
-    let up = V3::splat(glam::Vec3::Y);
+    let zero = V3::splat(crate::math::Vec3::ZERO);
+    let up = V3::splat(crate::math::Vec3::Y);
     let mut s = Surface {
         point: zero,
         normal: up,

@@ -8,11 +8,11 @@
 
 use super::{Rays8, Span};
 use crate::counters::{Counter, Counters};
+use crate::math::Vec3;
 use crate::math::hash::{mix_x8, unit_x8};
 use crate::math::lanes::{F, V3, splat};
 use crate::math::noise;
 use crate::scene::Voxels;
-use glam::Vec3;
 
 /// A ray in the grid's cells.
 #[derive(Clone, Copy)]

@@ -11,12 +11,12 @@ fn node() -> impl Strategy<Value = Node> + Clone {
     let at = vector(-3, 3);
     let half = [range(0.1, 1.0), range(0.1, 1.0), range(0.1, 1.0)].prop_map(Vec3::from_array);
     (0..7_u32, at, half, direction()).prop_map(|(kind, at, half, normal)| match kind {
-        0 => Node::sphere(at, half.x),
-        1 => Node::cuboid(at, half, 0.05),
-        2 => Node::capsule(at, half.y, half.x),
-        3 => Node::cylinder(at, half.y, half.x),
-        4 => Node::torus(at, half.y, half.x * 0.5),
-        5 => Node::plane(at, normal),
+        0 => Node::sphere(at.into(), half.x),
+        1 => Node::cuboid(at.into(), half.into(), 0.05),
+        2 => Node::capsule(at.into(), half.y, half.x),
+        3 => Node::cylinder(at.into(), half.y, half.x),
+        4 => Node::torus(at.into(), half.y, half.x * 0.5),
+        5 => Node::plane(at.into(), normal.into()),
         _ => Node::cross(half.x, 0.05),
     })
 }

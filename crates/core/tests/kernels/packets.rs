@@ -30,12 +30,12 @@ proptest! {
         numbers in prop::array::uniform8(share()),
         others in prop::array::uniform8(share()),
     ) {
-        let rays = Rays8 { origin: V3::from_fn(|i| origins[i]), direction: V3::from_fn(|i| ways[i]) };
-        let bar = Cylinder { base: at, axis, radius: size, length: 2.0 * size, material: 0 };
-        let cone = Cone { apex: at, axis, slope: size, range: [0.0, 1.0], caps: [true; 2], material: 0 };
+        let rays = Rays8 { origin: V3::from_fn(|i| origins[i].into()), direction: V3::from_fn(|i| ways[i].into()) };
+        let bar = Cylinder { base: at.into(), axis: axis.into(), radius: size, length: 2.0 * size, material: 0 };
+        let cone = Cone { apex: at.into(), axis: axis.into(), slope: size, range: [0.0, 1.0], caps: [true; 2], material: 0 };
         let spans = [
-            trace::sphere(&rays, &Sphere { centre: at, radius: size, material: 0, blend: 0.0 }),
-            trace::plane(&rays, &Plane { point: at, normal: axis, reach: f32::INFINITY, material: 0 }),
+            trace::sphere(&rays, &Sphere { centre: at.into(), radius: size, material: 0, blend: 0.0 }),
+            trace::plane(&rays, &Plane { point: at.into(), normal: axis.into(), reach: f32::INFINITY, material: 0 }),
             trace::cylinder(&rays, &bar),
             trace::cone(&rays, &cone),
         ];

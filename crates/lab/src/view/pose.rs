@@ -1,6 +1,7 @@
 //! The free camera: where it is, where it looks, and its pose as keys for a part's tracks.
 
-use glam::{Vec2, Vec3};
+use glam::Vec2;
+use luc_core::math::Vec3;
 use luc_core::math::scalar::sin_cos;
 use luc_core::scene::Camera;
 use minifb::Key;

@@ -2,11 +2,13 @@
 
 use lexopt::prelude::*;
 use luc_pack::report::{self, LIMIT, Report, history};
-use luc_pack::{Error, Method, Options, check, pack_elf_as, percent, size_build, write_executable};
+use luc_pack::{
+    Error, Method, Options, check, machinery, pack_elf_as, percent, release, size_build, write_executable,
+};
 use std::process::ExitCode;
 
 const HELP: &str = "\
-cargo pack [--check] [--report] [--history] [--method cm|lzma|raw]
+cargo pack [--check] [--report] [--history] [--release] [--method cm|lzma|raw]
 
 Builds the intro for size and packs it. Writes target/pack/luc, the packed file, and
 target/pack/luc-safe, the same program unpacked, and prints what became of each byte.
@@ -16,11 +18,14 @@ target/pack/luc-safe, the same program unpacked, and prints what became of each 
                      target/pack/report.html, which also shows what changed since the last
       --history      add this commit's sizes to docs/size-history.csv, and draw them
                      in docs/size-history.svg
+      --release      write the folder that one sends to a party, target/pack/luc-VERSION: both
+                     files, luc.nfo, file_id.diz and a picture; and the tune beside it
       --method NAME  cm: context mixing, smallest (default); lzma: starts faster;
                      raw: no compression
   -h, --help         this text
 
-Exit code 1: over 65,536 bytes, or it calls the platform's libm, which differs between machines,
+Exit code 1: over 65,536 bytes, or it has machinery of the engine that none of its parts calls for, or
+lacks some that one does, or it calls the platform's libm, which differs between machines,
 or the packed file does something else than the unpacked one.
 Exit code 2: it can't be built.
 ";
@@ -29,6 +34,7 @@ struct Arguments {
     check: bool,
     report: bool,
     history: bool,
+    release: bool,
     method: Method,
 }
 
@@ -61,13 +67,15 @@ fn fail(sentence: &str, code: u8) -> ExitCode {
 }
 
 fn arguments() -> Result<Option<Arguments>, lexopt::Error> {
-    let mut arguments = Arguments { check: false, report: false, history: false, method: Method::Cm };
+    let mut arguments =
+        Arguments { check: false, report: false, history: false, release: false, method: Method::Cm };
     let mut parser = lexopt::Parser::from_env();
     while let Some(argument) = parser.next()? {
         match argument {
             Long("check") => arguments.check = true,
             Long("report") => arguments.report = true,
             Long("history") => arguments.history = true,
+            Long("release") => arguments.release = true,
             Long("method") => {
                 let name = parser.value()?.string()?;
                 arguments.method =
@@ -85,8 +93,11 @@ fn pack(arguments: &Arguments) -> Result<Option<String>, Error> {
     let here = std::env::current_dir().map_err(Error::file("."))?;
     let root = size_build::project_root(&here)?;
     let output = root.join("target/pack");
-    let linked = size_build::build(&root, &output)?;
-    let linked = std::fs::read(&linked).map_err(Error::file(&linked))?;
+    let built = size_build::build(&root, &output)?;
+    let of_luc = machinery::compiled(&built.messages, "luc");
+    let (compiled, called) =
+        (machinery::compiled(&built.messages, "luc-core"), machinery::called(machinery::parts(&of_luc)));
+    let linked = std::fs::read(&built.linked).map_err(Error::file(&built.linked))?;
     let options = Options { method: arguments.method, name: "luc", needs_avx2: true, progress: percent };
     let packed = pack_elf_as(&linked, &options)?;
     let (file, safe) = (output.join("luc"), output.join("luc-safe"));
@@ -104,8 +115,17 @@ fn pack(arguments: &Arguments) -> Result<Option<String>, Error> {
         history::record(&root, &report)?;
     }
     print!("{report}");
+    println!("machinery       {}", compiled.join(", "));
+    if let Some(complaint) = machinery::difference(&compiled, &called) {
+        return Ok(Some(complaint));
+    }
     if report.total > LIMIT {
         return Ok(Some(format!("{} bytes over the limit of {LIMIT}", report.total - LIMIT)));
     }
-    Ok(if arguments.check { check::compare(&file, &safe)? } else { None })
+    let complaint = if arguments.check { check::compare(&file, &safe)? } else { None };
+    if arguments.release && complaint.is_none() {
+        let folder = release::write(&output, &packed.file, &packed.stripped, env!("CARGO_PKG_VERSION"))?;
+        println!("release        {}", folder.display());
+    }
+    Ok(complaint)
 }

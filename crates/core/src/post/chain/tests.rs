@@ -1,7 +1,8 @@
 use super::*;
+use crate::math::Vec3;
 use crate::math::hash::unit;
 use crate::scene::Place;
-use glam::{Vec2, Vec3};
+use glam::Vec2;
 
 /// A size that is no multiple of anything, higher than one strip.
 const SIZE: [usize; 2] = [83, 41];

@@ -1,10 +1,10 @@
 //! The box filter shares out all light, at any distance; rays that never meet a disc or rectangle.
 
 use super::*;
+use crate::math::Vec3;
 use crate::math::lanes::{TRUE, splat};
 use crate::scene::{Disc, Glow};
 use crate::trace::check::{Random, packet};
-use glam::Vec3;
 
 #[test]
 fn neighbouring_boxes_share_the_filter_without_rest() {

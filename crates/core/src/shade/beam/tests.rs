@@ -1,9 +1,10 @@
 //! The closed form against the integral over the haze, summed in f64.
 
 use super::*;
+use crate::math::Vec3;
 use crate::math::lanes::INFINITY;
 use crate::trace::check::{Random, packet, splat as alone};
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
 /// Sum of exp(-(r/w)²) / (w sqrt(pi)) over steps along the ray, r the distance from the segment.
 fn integral(b: &Beam, o: Vec3, d: Vec3, end: f64) -> f64 {

@@ -1,9 +1,9 @@
 //! Fog against the f64 length inside the box; rays in faces and along edges.
 
 use super::*;
+use crate::math::Vec3;
 use crate::math::lanes::{ZERO, splat};
 use crate::trace::check::{Random, packet};
-use glam::Vec3;
 
 const BOX: Fog = Fog {
     density: 0.3,

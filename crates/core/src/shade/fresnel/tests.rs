@@ -1,10 +1,11 @@
 //! Refraction against f64: reversible, total exactly where the sine says, continuous there.
 
 use super::*;
+use crate::math::Vec3;
 use crate::math::lanes::{ZERO, splat};
 use crate::scene::Material;
 use crate::trace::check::{self, Random, U};
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
 /// A glass surface with this unit normal towards the rays and this geometric normal.
 fn glass(normal: V3, facing: V3, inside: bool, ior: f32, f0: f32) -> Surface {

@@ -1,13 +1,13 @@
 //! Kernels in ulp of f64, reciprocity bit for bit, no more light out than in, finite everywhere.
 
 use super::*;
+use crate::math::Vec3;
 use crate::math::check::Worst;
 use crate::math::lanes::FALSE;
 use crate::math::lanes::splat_u;
 use crate::math::sampling::point;
 use crate::scene::Material;
 use crate::trace::check::{self, Random, tilted};
-use glam::Vec3;
 
 /// A surface that faces up.
 fn surface(roughness: f32, f0: Vec3) -> Surface {

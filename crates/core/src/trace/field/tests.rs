@@ -3,10 +3,11 @@
 
 use super::*;
 use crate::counters::Counters;
+use crate::math::Mat3;
 use crate::scene::{Material, Scene};
 use crate::trace::check::{Random, packet, splat as alone};
 use crate::trace::{nearest, surface};
-use glam::{DVec3, Mat3};
+use glam::DVec3;
 
 /// The preset that the tests march with, but for its bound of steps.
 const HIGH: Quality = Quality { steps: 4096, ..Quality::PRESETS[3].1 };

@@ -3,11 +3,12 @@
 //! A flat surface has no inside: it moves by the skin along its normal, and its rim outwards by
 //! as much as that moves the crossing. A ray may be parallel within 8 u of the angle.
 
+use crate::math::Vec3;
 use crate::math::lanes::{F, splat};
 use crate::scene::{Plane, Triangle};
 use crate::trace::check::{Inside, Line, Random, Tally, U, packet, two_to};
 use crate::trace::{Rays8, plane, triangle};
-use glam::{DVec2, DVec3, Vec3};
+use glam::{DVec2, DVec3};
 
 /// The crossing with the plane through `p`, raised by `skin`: none where a ray may be parallel,
 /// which is anywhere for a surface that grows.

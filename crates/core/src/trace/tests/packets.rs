@@ -2,6 +2,7 @@
 //! shadow rays meet.
 
 use crate::counters::Counters;
+use crate::math::Vec3;
 use crate::math::lanes::{F, TRUE, splat as all};
 use crate::quality::Quality;
 use crate::render::Stage;
@@ -12,7 +13,6 @@ use crate::scene::{
 use crate::shade::{Visibility, direct, split as split_light};
 use crate::trace::check::{Random, packet, poisoned, splat};
 use crate::trace::{BLOCKED, NONE, Rays8, nearest, occlusion, surface};
-use glam::Vec3;
 
 const PATTERNS: [Pattern; 4] = [Pattern::Noise, Pattern::Cells, Pattern::Brick, Pattern::Scratches];
 

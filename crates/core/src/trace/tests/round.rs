@@ -6,10 +6,11 @@
 //! grows by a skin when its apex moves back by skin sqrt(1 + k²) / k. The way from the origin to
 //! the shape counts twice in the skin, as the kernel also rounds the point where rays start anew.
 
+use crate::math::Vec3;
 use crate::scene::{Cone, Cylinder};
 use crate::trace::check::{Inside, Line, Random, Tally, U, packet};
 use crate::trace::{Rays8, cone, cylinder};
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
 /// 2^k.
 fn double(k: i32) -> f64 {

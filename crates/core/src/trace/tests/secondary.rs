@@ -6,6 +6,7 @@
 
 use crate::counters::Counters;
 use crate::math::lanes::{F, V3, splat};
+use crate::math::{Mat3, Vec3};
 use crate::mesh::{Assembly, Instance, Mesh};
 use crate::quality::Quality;
 use crate::scene::Shading;
@@ -13,7 +14,7 @@ use crate::scene::{Channel, Cone, Cylinder, Material, Plane, Scene, Sphere, Tria
 use crate::shade::split;
 use crate::trace::check::{Random, U, packet};
 use crate::trace::{NONE, Rays8, Surface, nearest, surface};
-use glam::{DVec3, Mat3, Vec3};
+use glam::DVec3;
 use std::sync::Arc;
 
 /// Kinds of shapes under test; cones leave again only outwards.

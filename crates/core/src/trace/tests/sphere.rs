@@ -1,10 +1,10 @@
 //! Sphere: both roots against the f64 chord about the point nearest to the centre.
 
+use crate::math::Vec3;
 use crate::math::lanes::splat;
 use crate::scene::Sphere;
 use crate::trace::check::{Inside, Line, Random, Tally, packet, two_to};
 use crate::trace::{Rays8, sphere};
-use glam::Vec3;
 
 fn ball(centre: Vec3, radius: f32) -> Sphere {
     Sphere { centre, radius, material: 0, blend: 0.0 }

@@ -1,13 +1,13 @@
 //! Relief bends the normal as the slope of the moved surface would, fades with the footprint into
 //! roughness, and leaves what has none alone.
 
+use crate::math::Vec3;
 use crate::math::lanes::{F, V3, splat};
 use crate::math::noise::value_noise;
 use crate::quality::Quality;
 use crate::scene::{Channel, Material, Plane, Scene, Texture};
 use crate::trace::check::Random;
 use crate::trace::{Rays8, Surface, surface};
-use glam::Vec3;
 
 /// A floor of this texture, seen by rays down onto `points` from 10 units above with this
 /// footprint per unit.

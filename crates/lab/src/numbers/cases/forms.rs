@@ -52,7 +52,7 @@ pub const KERNELS: &[Kernel] = &[
             let q = v3(x, 0).as_dvec3().abs() - v3(x, 3).as_dvec3();
             q.max(glam::DVec3::ZERO).length() + q.max_element().min(0.0)
         },
-        |x| kernels::sdf(&Node::cuboid(Vec3::ZERO, v3(x, 3), 0.0), v3(x, 0)),
+        |x| kernels::sdf(&Node::cuboid(Vec3::ZERO, v3(x, 3), 0.0), v3(x, 0).into()),
         |x| trace::form(&Node::cuboid(Vec3::ZERO, v3(&shape(x), 3), 0.0), packet(x, 0))
     ),
     kernel!(
@@ -69,7 +69,7 @@ pub const KERNELS: &[Kernel] = &[
             let out = (p.x * p.x + p.z * p.z).sqrt() - f64::from(x[3]);
             (out * out + p.y * p.y).sqrt() - f64::from(x[4])
         },
-        |x| kernels::sdf(&Node::torus(Vec3::ZERO, x[3], x[4]), v3(x, 0)),
+        |x| kernels::sdf(&Node::torus(Vec3::ZERO, x[3], x[4]), v3(x, 0).into()),
         |x| {
             let s = shape(x);
             trace::form(&Node::torus(Vec3::ZERO, s[3], s[4]), packet(x, 0))
@@ -87,9 +87,9 @@ pub const KERNELS: &[Kernel] = &[
         },
         |_, _| 0.0,
         |x| {
-            let (u, v) = kernels::basis(v3(x, 0));
+            let (u, v) = kernels::basis(v3(x, 0).into());
             let wide = |v: Vec3| v.as_dvec3().to_array();
-            naive::unlike(wide(u), wide(v), wide(v3(x, 0))) as f32
+            naive::unlike(wide(u.into()), wide(v.into()), wide(v3(x, 0))) as f32
         },
         |x| {
             let (u, v) = sampling::basis(packet(x, 0));

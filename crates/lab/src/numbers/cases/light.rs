@@ -33,7 +33,7 @@ pub const KERNELS: &[Kernel] = &[
             let (n, h) = (v3(x, 0).as_dvec3(), v3(x, 3).as_dvec3());
             ggx_truth(n.cross(h).length_squared(), n.dot(h), x[6].into())
         },
-        |x| kernels::ggx(v3(x, 0), v3(x, 3), x[6]),
+        |x| kernels::ggx(v3(x, 0).into(), v3(x, 3).into(), x[6]),
         |x| {
             let (n, h) = (packet(x, 0), packet(x, 3));
             let across = n.cross(h);
@@ -152,7 +152,7 @@ pub const KERNELS: &[Kernel] = &[
             // Within the rounding of n and d either is right.
             if (sine - 1.0).abs() < 8.0 * U { f64::INFINITY } else { -((1.0 - sine) * (1.0 + sine)).sqrt() }
         },
-        |x| some(kernels::refract(v3(x, 0), v3(x, 3), x[6]).map(|t| t.dot(v3(x, 3)))),
+        |x| some(kernels::refract(v3(x, 0).into(), v3(x, 3).into(), x[6]).map(|t| t.dot(v3(x, 3).into()))),
         |x| {
             let (d, n) = (packet(x, 0), packet(x, 3));
             shade::refract(n, d, -d.dot(n), x[6]).direction.x

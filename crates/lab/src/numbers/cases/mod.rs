@@ -3,8 +3,8 @@
 use super::naive;
 use super::real::{Arguments, vector};
 use super::truth;
-use glam::Vec3;
 use luc_core::kernels::{self, Ray};
+use luc_core::math::Vec3;
 use luc_core::math::lanes::{self, F, V3, splat};
 use luc_core::math::lanes_f64::D;
 use luc_core::math::random::Random;
@@ -84,7 +84,7 @@ fn rays(x: &Arguments<F>) -> Rays8 {
 }
 
 fn ray(x: &Arguments<f32>) -> Ray {
-    Ray { origin: v3(x, 0), direction: v3(x, 3) }
+    Ray { origin: v3(x, 0).into(), direction: v3(x, 3).into() }
 }
 
 /// Arguments from vectors and numbers, one after another.

@@ -15,7 +15,7 @@ pub const KERNELS: &[Kernel] = &[
             list([&o.to_array(), &d.to_array(), &centre.to_array(), &[radius]])
         },
         truth::sphere,
-        |x| some(kernels::sphere(&ray(x), v3(x, 6), x[9]).map(|c| c.first())),
+        |x| some(kernels::sphere(&ray(x), v3(x, 6).into(), x[9]).map(|c| c.first())),
         |x| {
             let s = shape(x);
             let ball = Sphere { centre: v3(&s, 6), radius: s[9], material: 0, blend: 0.0 };
@@ -35,7 +35,7 @@ pub const KERNELS: &[Kernel] = &[
             list([&o.to_array(), &d.to_array(), &point.to_array(), &normal.to_array()])
         },
         truth::plane,
-        |x| some(kernels::plane(&ray(x), v3(x, 6), v3(x, 9))),
+        |x| some(kernels::plane(&ray(x), v3(x, 6).into(), v3(x, 9).into())),
         |x| {
             let s = shape(x);
             let plane = Plane { point: v3(&s, 6), normal: v3(&s, 9), reach: f32::INFINITY, material: 0 };
@@ -52,7 +52,7 @@ pub const KERNELS: &[Kernel] = &[
             list([&o.to_array(), &d.to_array(), &place.to_array(), &axis.to_array(), &[r]])
         },
         truth::cylinder,
-        |x| some(kernels::cylinder(&ray(x), v3(x, 6), v3(x, 9), x[12]).map(|c| c.first())),
+        |x| some(kernels::cylinder(&ray(x), v3(x, 6).into(), v3(x, 9).into(), x[12]).map(|c| c.first())),
         |x| trace::cylinder(&rays(x), &bar(&shape(x), f32::INFINITY)).first().0
     ),
     kernel!(
@@ -69,7 +69,10 @@ pub const KERNELS: &[Kernel] = &[
             list([&o.to_array(), &d.to_array(), &place.to_array(), &axis.to_array(), &[r, 2.0 * r]])
         },
         truth::capped_cylinder,
-        |x| some(kernels::capped_cylinder(&ray(x), v3(x, 6), v3(x, 9), x[12], x[13]).map(|c| c.first())),
+        |x| some(
+            kernels::capped_cylinder(&ray(x), v3(x, 6).into(), v3(x, 9).into(), x[12], x[13])
+                .map(|c| c.first())
+        ),
         |x| {
             let s = shape(x);
             trace::cylinder(&rays(x), &bar(&s, s[13])).first().0
@@ -85,7 +88,7 @@ pub const KERNELS: &[Kernel] = &[
             list([&o.to_array(), &d.to_array(), &place.to_array(), &axis.to_array(), &[slope]])
         },
         truth::cone,
-        |x| some(kernels::cone(&ray(x), v3(x, 6), v3(x, 9), x[12]).map(|c| c.first())),
+        |x| some(kernels::cone(&ray(x), v3(x, 6).into(), v3(x, 9).into(), x[12]).map(|c| c.first())),
         |x| {
             let s = shape(x);
             let (apex, axis, range) = (v3(&s, 6), v3(&s, 9), [0.0, f32::INFINITY]);
@@ -113,7 +116,9 @@ pub const KERNELS: &[Kernel] = &[
             list([&o.to_array(), &d.to_array(), &corners[0], &corners[1], &corners[2]])
         },
         truth::triangle,
-        |x| some(kernels::triangle(&ray(x), [v3(x, 6), v3(x, 9), v3(x, 12)]).map(|h| h.t)),
+        |x| some(
+            kernels::triangle(&ray(x), [v3(x, 6).into(), v3(x, 9).into(), v3(x, 12).into()]).map(|h| h.t)
+        ),
         |x| {
             let s = shape(x);
             let triangle = Triangle { corners: [v3(&s, 6), v3(&s, 9), v3(&s, 12)], material: 0 };
@@ -147,7 +152,7 @@ pub const KERNELS: &[Kernel] = &[
             list([&o.to_array(), &d.to_array(), &lo.to_array(), &hi.to_array()])
         },
         truth::slab,
-        |x| some(kernels::slab(&ray(x), v3(x, 6), v3(x, 9)).map(|t| t[0])),
+        |x| some(kernels::slab(&ray(x), v3(x, 6).into(), v3(x, 9).into()).map(|t| t[0])),
         |x| {
             let s = shape(x);
             rays(x).in_box(v3(&s, 6), v3(&s, 9), lanes::INFINITY).0
