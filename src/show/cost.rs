@@ -69,6 +69,21 @@ static STILL: Still = Still {
     ..Still::NOTHING
 };
 
+/// Right of the line; where that is follows.
+const RIGHT: Place = Place { normal: Vec2::new(1.0, -SLANT), from: 0.0, over: 1e-4 };
+
+/// The drawing: gold in place of rose, few colours, lines of light, the cells; and a dark band below.
+static DRAWING: [Effect; 5] = [
+    Effect { place: RIGHT, ..Effect::new(Kind::Tint { colour: v(1.9, 0.8, 0.2), strength: 0.5 }) },
+    Effect { place: RIGHT, amount: 0.75, ..Effect::new(Kind::Levels(v(7.0, 7.0, 7.0))) },
+    Effect { place: RIGHT, ..Effect::new(Kind::Edges { strength: 5.0, colour: v(0.3, 0.42, 0.62) }) },
+    Effect { place: RIGHT, ..Effect::new(Kind::Cells { shade: 0.6, colour: v(0.07, 0.06, 0.18) }) },
+    Effect {
+        place: Place { normal: Vec2::NEG_Y, from: 0.32, over: 0.28 },
+        ..Effect::new(Kind::Lighten(-0.9))
+    },
+];
+
 /// Writes a number, digit by digit from the right; every fourth place stays as it is.
 fn digits(words: &mut [u8], mut n: u64) {
     for (i, word) in words.iter_mut().rev().enumerate() {
@@ -81,12 +96,12 @@ fn digits(words: &mut [u8], mut n: u64) {
 
 /// The figures under the picture, and the line.
 fn titles(figures: &Figures) -> Scene {
-    let mut scene = Scene {
-        // The plane one unit ahead is two units wide.
-        camera: Camera { position: Vec3::ZERO, target: Vec3::NEG_Z, roll: 0.0, fov: degrees(90.0) },
-        grade: Grade { bloom_threshold: 0.9, bloom: 0.5, ..Grade::DEFAULT },
-        ..Scene::default()
-    };
+    let mut scene = Scene::default();
+    // The plane one unit ahead is two units wide.
+    scene.camera.position = Vec3::ZERO;
+    scene.camera.target = Vec3::NEG_Z;
+    scene.camera.fov = degrees(90.0);
+    (scene.grade.bloom_threshold, scene.grade.bloom) = (0.9, 0.5);
     let height = figures.height;
     let split = &figures.split;
     let at = |y: f32| v(split.x + split.slant * y, height * y, -1.0);
@@ -132,16 +147,10 @@ pub fn scene(frame: u64) -> Scene {
     let position = v(1.9, 2.4, 7.2 + t / 24.0);
     s.camera = Camera { position, target: v(-1.1, 4.5, -12.0), roll: degrees(-2.0), fov: degrees(52.0) };
     s.meshes = cathedral(20.0, 8, false);
-    let right = Place { normal: Vec2::new(1.0, -SLANT), from: x, over: 1e-4 };
-    let below = Place { normal: Vec2::NEG_Y, from: 0.32, over: 0.28 };
-    let drawn = |kind, amount| Effect { amount, place: right, ..Effect::new(kind) };
-    s.effects = vec![
-        drawn(Kind::Tint { colour: v(1.9, 0.8, 0.2), strength: 0.5 }, 1.0),
-        drawn(Kind::Levels(v(7.0, 7.0, 7.0)), 0.75),
-        drawn(Kind::Edges { strength: 5.0, colour: v(0.3, 0.42, 0.62) }, 1.0),
-        drawn(Kind::Cells { shade: 0.6, colour: v(0.07, 0.06, 0.18) }, 1.0),
-        Effect { place: below, ..Effect::new(Kind::Lighten(-0.9)) },
-    ];
+    s.effects = DRAWING.to_vec();
+    for effect in &mut s.effects[..4] {
+        effect.place.from = x;
+    }
     let light = 1.0 + pulse(&KICK, frame, 6.0);
     s.split = Some(Split { x, slant: SLANT, light, titles });
     s

@@ -18,7 +18,6 @@ macro_rules! counters {
             pub const ALL: [(Counter, &str); [$($words,)*].len()] = [$((Counter::$name, $words),)*];
 
             /// Whether rays are counted, each once: those of rough mirrors are among the reflected ones.
-            #[inline(always)]
             pub fn is_ray(self) -> bool {
                 use Counter::*;
                 matches!(self, PrimaryRays | ReflectedRays | RefractedRays | ScatterRays | ShadowRays)
@@ -128,10 +127,6 @@ impl Counters {
         {
             self.counts[counter as usize] += n as u64;
         }
-        #[cfg(feature = "split")]
-        if counter.is_ray() {
-            self.rays += n as u64;
-        }
         let _ = (counter, n);
     }
 
@@ -144,6 +139,16 @@ impl Counters {
             let _ = counter;
             0
         }
+    }
+
+    /// Adds `n` rays of any kind, besides what is counted for their kind.
+    #[inline(always)]
+    pub fn add_rays(&mut self, n: usize) {
+        #[cfg(feature = "split")]
+        {
+            self.rays += n as u64;
+        }
+        let _ = n;
     }
 
     /// Rays of all kinds, with or without the feature `counters`; 0 without the feature `split`, which asks

@@ -71,29 +71,28 @@ pub fn refine(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize), tile
     let height = TILE.min(stage.height as usize - corner.1);
     let mut around = Surroundings { shapes: stage.candidates(corner, TILE), shadows: [u64::MAX; MAX_LAMPS] };
     tile.edges = [[false; GRID]; GRID];
-    for side in stage.sides() {
-        refine_side(stage, scratch, corner, (width, height), side, &mut around, tile);
-    }
-    if features::SPLIT && stage.scene.split.is_some() {
-        measure(stage, scratch, corner, (width, height), around.shapes, tile);
+    for pass in stage.sides().start..2 + (features::SPLIT && stage.scene.split.is_some()) as usize {
+        refine_side(stage, scratch, corner, (width, height), pass, &mut around, tile);
     }
 }
 
-/// Samples what of the tile lies on one side of the scene's line.
+/// Samples what of the tile lies on one side of the scene's line: 0, each pixel on the left, 1, the right
+/// side, 2, each pixel on the right that has no ray of its own, to measure what is there.
 fn refine_side(
     stage: &Stage,
     scratch: &mut Scratch,
     corner: (usize, usize),
     (width, height): (usize, usize),
-    side: usize,
+    pass: usize,
     around: &mut Surroundings,
     tile: &mut Tile,
 ) {
     let before = scratch.counters.rays();
-    let cell = match (side, stage.quality.cell(stage.height) as usize) {
-        (0, _) | (_, 1) => 1,
-        (_, cell) if stage.sides().len() == 2 => (cell * 4).min(32),
-        (_, cell) => cell,
+    let (side, measures) = (pass.min(1), pass == 2);
+    let cell = match stage.quality.cell(stage.height) as usize {
+        _ if pass != 1 => 1,
+        cell if cell > 1 && stage.sides().len() == 2 => (cell * 4).min(32),
+        cell => cell,
     };
     scratch.samples.0.clear();
     scratch.grid.clear();
@@ -105,7 +104,10 @@ fn refine_side(
         for x in along(width) {
             let cell = Cell { x, y, size: cell };
             if cell.lies(stage, corner, side) {
-                cells.push(cell);
+                tile.measured[0] += measures as u32 as f32;
+                if !measures || tile.record[y * TILE + x].kind() != Kind::Traced {
+                    cells.push(cell);
+                }
             }
         }
     }
@@ -125,7 +127,11 @@ fn refine_side(
                 scratch.samples.get(scratch.grid[y * GRID + x] as usize)
             };
             let known = Known { size: cell.size, samples: std::array::from_fn(at) };
-            if cell.size == 1 {
+            if measures {
+                let off = stage.display.map(tile.get(cell.x, cell.y)) - known.samples[0].display();
+                tile.measured[1] += off.dot(off);
+                scratch.counters.add(Counter::Measured, 1);
+            } else if cell.size == 1 {
                 tile.set(cell.x, cell.y, known.samples[0].colour(), Record::new(Kind::Traced, 1));
                 tile.nearness[cell.y * TILE + cell.x] = 1.0 / known.samples[0].depth();
                 scratch.counters.add(Counter::Traced, 1);
@@ -151,35 +157,8 @@ fn refine_side(
             }
         }
     }
-    tile.rays[side] = scratch.counters.rays() - before;
-}
-
-/// Holds the pixels right of the line that have no ray of their own against one.
-fn measure(
-    stage: &Stage,
-    scratch: &mut Scratch,
-    corner: (usize, usize),
-    (width, height): (usize, usize),
-    shapes: u64,
-    tile: &mut Tile,
-) {
-    let (mut pixels, mut positions) = (Vec::new(), Vec::new());
-    for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
-        let (px, py) = (corner.0 + x, corner.1 + y);
-        if stage.side(px, py) == 1 {
-            tile.measured[0] += 1.0;
-            if tile.record[y * TILE + x].kind() != Kind::Traced {
-                pixels.push(tile.get(x, y));
-                positions.push((px as f32 + 0.5, py as f32 + 0.5));
-            }
-        }
-    }
-    scratch.counters.add(Counter::Measured, pixels.len());
-    scratch.samples.0.clear();
-    trace(stage, scratch, &positions, shapes);
-    for (i, &pixel) in pixels.iter().enumerate() {
-        let off = stage.display.map(pixel) - scratch.samples.get(i).display();
-        tile.measured[1] += off.dot(off);
+    if !measures {
+        tile.rays[side] = scratch.counters.rays() - before;
     }
 }
 

@@ -158,7 +158,9 @@ pub fn direct(
         if let (Some(code), Visibility::Trace(candidates)) = (codes.get_mut(k), &visibility) {
             *code = zero;
             if (candidates[k] != 0 || !stage.scene.meshes.is_empty()) && wanted.any() {
-                counters.add(Counter::ShadowRays, wanted.to_bitmask().count_ones() as usize);
+                let count = wanted.to_bitmask().count_ones() as usize;
+                counters.add(Counter::ShadowRays, count);
+                counters.add_rays(count);
                 let rays = Rays8 { origin: start, direction: to_lamp };
                 counters.watch.enter(Phase::Tracing);
                 let found = occlusion(
