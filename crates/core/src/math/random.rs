@@ -58,7 +58,8 @@ impl Random {
         loop {
             let v = Vec3::new(self.range(-1.0, 1.0), self.range(-1.0, 1.0), self.range(-1.0, 1.0));
             if (0.01..1.0).contains(&v.length_squared()) {
-                return v.normalize();
+                // By the reciprocal, so that a stream keeps its cases.
+                return v * (1.0 / v.length());
             }
         }
     }
