@@ -1,4 +1,5 @@
-//! Small lights in great number: culling changes no byte, and light ends where it should.
+//! Small lights in great number: culling changes no byte, and light ends where it should. Shining
+//! rectangles: their shadows are as soft as the quality draws them.
 
 use luc_core::counters::Counter;
 use luc_core::math::Vec3;
@@ -6,7 +7,7 @@ use luc_core::math::hash::{hash2, unit};
 use luc_core::plan::{Plan, warnings};
 use luc_core::quality::Quality;
 use luc_core::render::Renderer;
-use luc_core::scene::{Camera, Material, Plane, PointLight, Scene, Shading, Sphere};
+use luc_core::scene::{Camera, Emitter, Material, Plane, PointLight, Scene, Shading, Sphere};
 
 const SIZE: (u32, u32) = (320, 180);
 
@@ -104,4 +105,63 @@ fn the_count_of_lights_is_drawn_tile_by_tile() {
     assert!(lit > pixels.len() / 10 && lit < pixels.len() * 9 / 10, "{lit} pixels in tiles with lights");
     let empty = Scene { points: vec![], ..scene };
     assert!(render(&empty, &quality).0.iter().all(|&p| light(p) < 8), "no light, no count");
+}
+
+/// A ball under a shining rectangle, from above, so that most of the picture is the floor.
+fn under_a_rectangle() -> Scene {
+    Scene {
+        camera: Camera { position: Vec3::new(0.0, 9.0, 12.0), target: Vec3::ZERO, roll: 0.0, fov: 1.2 },
+        spheres: vec![Sphere { centre: Vec3::new(0.0, 3.0, 0.0), radius: 0.8, material: 0, blend: 0.0 }],
+        emitters: vec![Emitter::facing(Vec3::Y * 9.0, Vec3::ZERO, 3.0, 3.0, Vec3::splat(8.0))],
+        soft: true,
+        ..scene(0, Shading::Phong)
+    }
+}
+
+/// Green of the rows that show the shadow but not the ball.
+fn floor(scene: &Scene, quality: &Quality) -> Vec<f64> {
+    render(scene, quality).0[80 * SIZE.0 as usize..].iter().map(|p| f64::from(p >> 8 & 255)).collect()
+}
+
+#[test]
+fn many_shadow_rays_to_a_rectangle_soften_its_shadow() {
+    let scene = under_a_rectangle();
+    let base = Quality::named("high").unwrap().every_pixel();
+    let bare = floor(&Scene { spheres: vec![], ..scene.clone() }, &base);
+    let share = |samples, range: std::ops::Range<f64>| {
+        let picture = floor(&scene, &Quality { shadow_samples: samples, ..base });
+        picture.iter().zip(&bare).filter(|&(v, lit)| *lit > 20.0 && range.contains(&(v / lit))).count()
+    };
+    let umbra = [1, 64].map(|samples| share(samples, 0.0..0.1));
+    let penumbra = [1, 64].map(|samples| share(samples, 0.2..0.9));
+    assert!(umbra[0] > 200 && umbra[1] < umbra[0] / 2, "umbra, hard and soft: {umbra:?}");
+    assert!(penumbra[1] > 500 && penumbra[1] > 4 * penumbra[0], "penumbra, hard and soft: {penumbra:?}");
+}
+
+#[test]
+fn soft_shadows_are_for_scenes_and_presets_that_have_them() {
+    let soft = under_a_rectangle();
+    let hard = Scene { soft: false, ..soft.clone() };
+    for (name, quality) in Quality::PRESETS {
+        let differs = render(&soft, &quality).0 != render(&hard, &quality).0;
+        let rays = quality.shadow_samples;
+        assert_eq!(differs, rays > 1, "{name} with {rays} rays");
+        let plan = Plan::of(&soft, &quality);
+        assert_eq!(plan.names(Counter::SoftShadowRays), rays > 1, "{name}");
+        assert!(!Plan::of(&hard, &quality).names(Counter::SoftShadowRays), "{name}");
+    }
+}
+
+#[test]
+fn a_soft_shadow_comes_near_to_that_of_very_many_rays() {
+    let scene = under_a_rectangle();
+    let base = Quality::named("high").unwrap().every_pixel();
+    let error = |samples| {
+        let truth = floor(&scene, &Quality { shadow_samples: 1024, ..base });
+        let picture = floor(&scene, &Quality { shadow_samples: samples, ..base });
+        let squares: f64 = picture.iter().zip(&truth).map(|(a, b)| (a - b) * (a - b)).sum();
+        (squares / truth.len() as f64).sqrt()
+    };
+    let errors = [1, 4, 16, 64].map(error);
+    assert!(errors.is_sorted_by(|a, b| *b < 0.6 * a), "rms error with 1, 4, 16, 64 rays: {errors:.2?}");
 }

@@ -154,8 +154,12 @@ fn named_in_the_manifest() -> Vec<String> {
         names.map(|name| name.trim_matches('"').trim_start_matches("luc-core/").to_owned()).collect()
     };
     let mut names = list("luc-core = { workspace", "features = [");
-    for (has, part) in [(cfg!(feature = "smoke"), "smoke = ["), (cfg!(feature = "cost"), "cost = [")] {
-        if has {
+    for (part, called) in [
+        ("smoke = [", cfg!(feature = "smoke")),
+        ("swarm = [", cfg!(feature = "swarm")),
+        ("cost = [", cfg!(feature = "cost")),
+    ] {
+        if called {
             names.extend(list(part, "["));
         }
     }

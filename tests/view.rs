@@ -101,6 +101,30 @@ fn steps_are_the_tests_of_each_pixel() {
 }
 
 #[test]
+fn the_view_of_the_lights_is_blue_for_one_and_white_for_many() {
+    let lamps = |count: usize| {
+        let mut scene = ball();
+        let light = PointLight { position: Vec3::Z * 2.5, radius: 1.5, colour: Vec3::ONE };
+        scene.points = vec![light; count];
+        (scene.grade.grain, scene.grade.vignette) = (0.0, 0.0);
+        let mut expected = vec![0; (SIZE.0 * SIZE.1) as usize];
+        let covered = Scene { light_count: 1.0, ..scene.clone() };
+        Renderer::default().frame(&covered, 0, SIZE, &quality(), &mut expected);
+        let pixels = draw(View::Lights, &scene, &quality());
+        assert_eq!(pixels, expected, "{count} lights");
+        pixels
+    };
+    let middle = (SIZE.1 / 2 * SIZE.0 + SIZE.0 / 2) as usize;
+    let colours = [(0, 0), (1, 0x1b_2a7a), (4, 0x5a_3fc0), (12, 0xc0_5a9e), (32, 0xff_b347), (64, 0xff_f3d6)];
+    for (count, colour) in colours.into_iter().chain([(300, 0xff_f3d6)]) {
+        let pixels = lamps(count);
+        let off = channels(pixels[middle]).into_iter().zip(channels(colour)).map(|(a, b)| (a - b).abs());
+        assert!(off.max() <= Some(1), "{count} lights: {:06x} for {colour:06x}", pixels[middle]);
+        assert_eq!(pixels[0], 0, "the sky has no surface that {count} lights could reach");
+    }
+}
+
+#[test]
 fn the_view_of_the_sampling_is_the_frame_under_the_overlay() {
     for part in show::PARTS {
         let scene = (part.scene)(100);

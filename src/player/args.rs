@@ -273,7 +273,8 @@ const VIEW_HELP: &[u8] = if cfg!(luc_size) {
     b""
 } else {
     b"  --view NAME      draw a frame's normal, distance (white at 50 units), albedo,
-                   sampling or steps (of its rays, white at 128) instead
+                   sampling, lights (blue: one small light, white: 64) or
+                   steps (of its rays, white at 128) instead
 "
 };
 
@@ -388,7 +389,10 @@ mod tests {
             (&["--frame=3"], "'--frame=3' is not an option"),
             (&["-o", "a.png"], "-o needs --frame"),
             (&["--view", "normal"], "--view needs --frame"),
-            (&["--frame", "1", "--view", "x"], "one of normal distance albedo sampling steps, not 'x'"),
+            (
+                &["--frame", "1", "--view", "x"],
+                "one of normal distance albedo sampling lights steps, not 'x'",
+            ),
             (&["--frame", "1", "--view", "normal", "--average", "4"], "--average is for light"),
             (&["--average", "4"], "--average needs --frame"),
             (&["--frame", "1", "--average", "0"], "--average wants a whole number from 1 to 1024, not '0'"),

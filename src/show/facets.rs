@@ -19,9 +19,9 @@ const KICK: [Strikes; 12] = strikes(&score::SCORE, &score::FACETS, score::KICK);
 
 /// Distance of the piers from the middle of the nave, height of their capitals, and length of a
 /// bay, units.
-const SIDE: f32 = 4.2;
+pub const SIDE: f32 = 4.2;
 const SPRING: f32 = 6.6;
-const BAY: f32 = 4.5;
+pub const BAY: f32 = 4.5;
 
 /// Radius of the circles of which the pointed arch is made, and the angle at which they meet.
 const ARCH: f32 = (SIDE * SIDE + SPRING * SPRING) / (2.0 * SIDE);
@@ -37,23 +37,24 @@ const TILT: [Key; 3] =
     [key(9.0, 0.19, Ease::Smooth), key(18.0, 0.24, Ease::Smooth), key(24.0, 0.47, Ease::Step)];
 const ROLL: [Key; 2] = [key(12.0, 2.5, Ease::Smooth), key(24.0, -3.0, Ease::Step)];
 
-type Triangles = Vec<[Vec3; 3]>;
+pub type Triangles = Vec<[Vec3; 3]>;
 
 /// See [`RULES`].
 type Rule = (fn(&mut Triangles, &mut Dice), usize, f32, f32);
 
 /// Numbers drawn one after the other.
-struct Dice(u32);
+pub struct Dice(pub u32);
 
 impl Dice {
-    fn roll(&mut self, lo: f32, hi: f32) -> f32 {
+    #[inline(never)]
+    pub fn roll(&mut self, lo: f32, hi: f32) -> f32 {
         self.0 += 1;
         lo + (hi - lo) * unit(hash2(self.0, 64))
     }
 }
 
 /// A crystal that leans: a body of six sides and a pointed tip.
-fn crystal(out: &mut Triangles, foot: Vec3, axis: Vec3, [radius, tip]: [f32; 2], turn: f32) {
+pub fn crystal(out: &mut Triangles, foot: Vec3, axis: Vec3, [radius, tip]: [f32; 2], turn: f32) {
     let neck = foot + axis;
     lathe(out, &[(foot, radius), (neck, radius * 0.8), (neck + axis.normalize() * tip, 0.0)], 6, turn);
 }
@@ -65,14 +66,14 @@ fn arch(share: f32, out: f32) -> Vec3 {
 }
 
 /// The pier's shaft and capital.
-fn shaft(out: &mut Triangles, _: &mut Dice) {
+pub fn shaft(out: &mut Triangles, _: &mut Dice) {
     let ring = |height, radius| (Vec3::Y * height, radius);
     lathe(out, &[ring(0.0, 0.62), ring(SPRING, 0.44)], 6, 0.03);
     lathe(out, &[ring(6.1, 0.0), ring(6.1, 0.5), ring(6.85, 0.72), ring(6.85, 0.0)], 6, 0.01);
 }
 
 /// The crystals that lean at its foot.
-fn foot(out: &mut Triangles, dice: &mut Dice) {
+pub fn foot(out: &mut Triangles, dice: &mut Dice) {
     for k in 0..7 {
         let (sin, cos) = sin_cos(k as f32 * 0.9 + dice.roll(-0.3, 0.3));
         let away = v(cos, 0.0, sin);
@@ -96,16 +97,24 @@ fn splinters(out: &mut Triangles, dice: &mut Dice) {
     }
 }
 
-/// Half of the arch over the nave, half of the two diagonal ribs, half of the keystone.
+/// Radius and slant of half of the arch over the nave and halves of the two diagonal ribs.
+pub const RIBS: [(f32, f32); 3] = [(0.3, 0.0), (0.16, 0.5), (0.16, -0.5)];
+
+/// The first of the seven pieces of a rib.
+pub fn rib(out: &mut Triangles, dice: &mut Dice, (radius, slant): (f32, f32), pieces: usize) {
+    for k in 0..pieces {
+        let at = |k: usize| {
+            let share = k as f32 / 7.0;
+            arch(share, 0.0) + Vec3::Z * (slant * share * BAY)
+        };
+        lathe(out, &[(at(k), radius), (at(k + 1), radius * 0.97)], 6, dice.roll(-0.03, 0.03));
+    }
+}
+
+/// The ribs, and half of the keystone.
 fn ribs(out: &mut Triangles, dice: &mut Dice) {
-    for (radius, slant) in [(0.3, 0.0), (0.16, 0.5), (0.16, -0.5)] {
-        for k in 0..7 {
-            let at = |k: i32| {
-                let share = k as f32 / 7.0;
-                arch(share, 0.0) + Vec3::Z * (slant * share * BAY)
-            };
-            lathe(out, &[(at(k), radius), (at(k + 1), radius * 0.97)], 6, dice.roll(-0.03, 0.03));
-        }
+    for shape in RIBS {
+        rib(out, dice, shape, 7);
     }
     let top = arch(1.0, 0.0);
     lathe(out, &[(top - Vec3::Y * 1.4, 0.0), (top - Vec3::Y * 1.2, 0.3), (top, 0.5)], 6, 0.0);

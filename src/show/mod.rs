@@ -16,6 +16,8 @@ pub mod score;
 #[cfg(feature = "smoke")]
 mod smoke;
 mod still;
+#[cfg(feature = "swarm")]
+mod swarm;
 mod text;
 
 use luc_core::quality::Quality;
@@ -64,13 +66,15 @@ pub const PARTS: &[Part] = &[
     part("blobs", &score::BLOBS, blobs::scene),
     #[cfg(feature = "smoke")]
     part("smoke", &score::SMOKE, smoke::scene),
+    #[cfg(feature = "swarm")]
+    part("swarm", &score::SWARM, swarm::scene),
     #[cfg(feature = "cost")]
     part("cost", &score::COST, cost::scene),
     part("end", &score::END, end::scene),
 ];
 
 /// Parts that are here by a feature of their own, with their names.
-pub const OPTIONAL: &[&str] = &["smoke", "cost"];
+pub const OPTIONAL: &[&str] = &["smoke", "swarm", "cost"];
 
 /// Length of the whole show in frames; frame n is frame n mod this.
 pub const FRAMES: u64 = {

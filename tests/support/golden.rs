@@ -10,7 +10,7 @@ use std::path::PathBuf;
 pub const SIZE: (u32, u32) = (320, 180);
 
 /// Part and local frame of the kept pictures.
-pub const FRAMES: [(&str, u64); 29] = [
+pub const FRAMES: [(&str, u64); 32] = [
     ("blobs", 0),     // the drop: the lattice closed
     ("blobs", 400),   // satellites fly
     ("blobs", 1199),  // last frame
@@ -40,13 +40,16 @@ pub const FRAMES: [(&str, u64); 29] = [
     ("cost", 0),      // first frame: nearly all traced
     ("cost", 719),    // last frame: half and half
     ("smoke", 421),   // between two steps: the first smoke
+    ("swarm", 0),     // first frame: in the nave
+    ("swarm", 560),   // before the ruin
+    ("swarm", 1020),  // the tiles with their lights
 ];
 
 /// Part, local frame, preset, size.
 pub type Frame = (&'static str, u64, &'static str, (u32, u32));
 
 /// Frames whose fingerprints are kept.
-pub const FINGERPRINTS: [Frame; 32] = [
+pub const FINGERPRINTS: [Frame; 36] = [
     ("blobs", 12, "draft", (333, 187)),
     ("blobs", 700, "medium", (320, 180)),
     ("blobs", 950, "ultra", (320, 180)),
@@ -79,15 +82,19 @@ pub const FINGERPRINTS: [Frame; 32] = [
     ("smoke", 420, "reference", (96, 54)),
     ("smoke", 700, "medium", (320, 180)),
     ("smoke", 1439, "draft", (333, 187)),
+    ("swarm", 150, "draft", (333, 187)),
+    ("swarm", 480, "medium", (320, 180)),
+    ("swarm", 900, "ultra", (320, 180)),
+    ("swarm", 1199, "reference", (96, 54)),
 ];
 
 /// Whether a part is in the 64 kB file too.
 pub fn in_every_build(part: &str) -> bool {
-    !["smoke", "cost"].contains(&part)
+    !show::OPTIONAL.contains(&part)
 }
 
 /// Part and local frame of those whose value is kept for all builds, in `values.txt`.
-pub const VALUES: [(&str, u64); 18] = [
+pub const VALUES: [(&str, u64); 20] = [
     ("blobs", 200),
     ("blobs", 600),
     ("blobs", 1000),
@@ -106,6 +113,8 @@ pub const VALUES: [(&str, u64); 18] = [
     ("end", 240),
     ("cost", 400),
     ("smoke", 180),
+    ("swarm", 300),
+    ("swarm", 960),
 ];
 
 /// Size of those.

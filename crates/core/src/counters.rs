@@ -33,6 +33,7 @@ counters! {
     RoughRays "rays drawn by rough mirrors",
     ScatterRays "rays of diffuse bounces",
     ShadowRays "shadow rays",
+    SoftShadowRays "rays of soft shadows",
     SphereTests "tests of spheres",
     PlaneTests "tests of planes",
     CylinderTests "tests of cylinders",

@@ -26,6 +26,8 @@ pub const ENDLESS: bool = cfg!(feature = "endless");
 pub const BOUNCES: bool = cfg!(feature = "bounces");
 /// Mirrors of rough surfaces by several rays.
 pub const ROUGH: bool = cfg!(feature = "rough");
+/// Shadows of shining rectangles by several rays.
+pub const SOFT_SHADOWS: bool = cfg!(feature = "soft-shadows");
 /// Small lights in great number.
 pub const POINTS: bool = cfg!(feature = "points");
 /// Triangle meshes.
@@ -72,7 +74,7 @@ pub const EFFECT_TUBE: bool = cfg!(feature = "effect-tube");
 pub const EFFECT_GRAIN: bool = cfg!(feature = "effect-grain");
 
 /// Each feature with the counter that shows it at work.
-pub const ALL: [(&str, Counter); 30] = [
+pub const ALL: [(&str, Counter); 31] = [
     ("ggx", Counter::Ggx),
     ("bumps", Counter::Bumps),
     ("fields", Counter::FieldSteps),
@@ -83,6 +85,7 @@ pub const ALL: [(&str, Counter); 30] = [
     ("endless", Counter::EndlessTests),
     ("bounces", Counter::ScatterRays),
     ("rough", Counter::RoughRays),
+    ("soft-shadows", Counter::SoftShadowRays),
     ("points", Counter::PointLights),
     ("meshes", Counter::NodeVisits),
     ("smooth", Counter::SmoothFacets),

@@ -22,6 +22,7 @@ impl Plan {
         let lamps = !scene.lights.is_empty() || !scene.emitters.is_empty();
         let shows = materials().any(|m| m.diffuse > 0.0 || m.specular.max_element() > 0.0);
         let lit = lamps && shows;
+        let soft = scene.soft && quality.shadow_samples > 1 && !scene.emitters.is_empty();
         let points = !scene.points.is_empty() && shows;
         let shines = lit || points;
         let chains = quality.depth > 0;
@@ -70,6 +71,7 @@ impl Plan {
             (Counter::DiscTests, !scene.background.discs.is_empty()),
             (Counter::Glows, !scene.background.glows.is_empty()),
             (Counter::ShadowRays, lit),
+            (Counter::SoftShadowRays, shows && soft),
             (Counter::LightEvaluations, lit),
             (Counter::Phong, shines && scene.shading == Shading::Phong),
             (Counter::CookTorrance, shines && scene.shading == Shading::CookTorrance),

@@ -45,6 +45,9 @@ pub struct Quality {
     pub steps: u32,
     /// Steps of the eye's rays through smoke, in its cells; rays of mirrors take thrice as long ones.
     pub smoke: f32,
+    /// Rays to points of each shining rectangle, where the scene has soft shadows; 1 for one to its
+    /// middle. At least 1.
+    pub shadow_samples: u32,
     /// Side of the tiles of the screen by which small lights are culled, px, at least 1. Changes the
     /// time, never the picture (but for the one that counts the lights).
     pub light_tile: u32,
@@ -75,6 +78,7 @@ impl Quality {
                 epsilon: 2e-3,
                 steps: 48,
                 smoke: 2.0,
+                shadow_samples: 1,
                 light_tile: 16,
                 cull: true,
                 average: 1,
@@ -97,6 +101,7 @@ impl Quality {
                 epsilon: 1e-3,
                 steps: 64,
                 smoke: 2.0,
+                shadow_samples: 1,
                 light_tile: 16,
                 cull: true,
                 average: 1,
@@ -119,6 +124,7 @@ impl Quality {
                 epsilon: 5e-4,
                 steps: 96,
                 smoke: 1.5,
+                shadow_samples: 4,
                 light_tile: 16,
                 cull: true,
                 average: 1,
@@ -141,6 +147,7 @@ impl Quality {
                 epsilon: 3e-4,
                 steps: 128,
                 smoke: 1.0,
+                shadow_samples: 8,
                 light_tile: 16,
                 cull: true,
                 average: 1,
@@ -163,6 +170,7 @@ impl Quality {
                 epsilon: 2e-4,
                 steps: 192,
                 smoke: 0.5,
+                shadow_samples: 16,
                 light_tile: 16,
                 cull: true,
                 average: 1,
@@ -185,6 +193,7 @@ impl Quality {
                 epsilon: 1e-4,
                 steps: 384,
                 smoke: 0.25,
+                shadow_samples: 64,
                 light_tile: 16,
                 cull: true,
                 average: 1,

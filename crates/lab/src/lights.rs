@@ -11,7 +11,7 @@ use std::time::Instant;
 
 const SIZE: (u32, u32) = (640, 360);
 const SIDES: [u32; 5] = [4, 8, 16, 32, 64];
-const COUNTS: [u32; 10] = [1, 2, 4, 8, 16, 32, 64, 128, 256, 512];
+const COUNTS: [usize; 10] = [1, 2, 4, 8, 16, 32, 64, 128, 256, 512];
 /// Rounds whose median times are told.
 const ROUNDS: usize = 5;
 

@@ -1,4 +1,4 @@
-//! What the lab draws: the parts of the show, and a scene of small lights that no part has yet.
+//! What the lab draws: the parts of the show, and one of them with fewer small lights.
 
 use crate::swarm;
 use luc::show;
@@ -22,7 +22,7 @@ impl Subject {
         show::PARTS.iter().map(subject).collect()
     }
 
-    /// 256 small lights over hills by night; it stands still.
+    /// Half of Swarm's small lights; it stands still.
     pub fn fireflies() -> Subject {
         Subject { name: "fireflies", frames: 1, scene: |_| swarm::scene(256) }
     }

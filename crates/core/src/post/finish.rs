@@ -15,7 +15,10 @@ use crate::math::hash::hash2;
 use crate::math::lanes::{F, RAMP, V3, load, splat, splat_u};
 use crate::render::Stage;
 use crate::sample::{Kind, TILE, Tile};
+use crate::scene::Stop;
+use crate::shade::Points;
 use crate::study::Phase;
+use crate::trace::ramp;
 use crate::{features, parallel};
 
 /// Rows that are finished as one piece of work.
@@ -102,11 +105,12 @@ fn develop(stage: &Stage, tiles: &[Tile], glow: Option<&Picture>, (x, y): (usize
             colour.set_lane(lane, painted);
         }
     }
-    if let (true, Some(points)) = (features::POINTS && stage.scene.light_count > 0.0, &stage.points) {
+    if features::POINTS && stage.scene.light_count > 0.0 {
         let at = stage.on_screen(x as f32 + 4.0, y as f32 + 0.5);
-        let depths = tile.depths((x % TILE, y % TILE), stage.quality.light_tile as usize);
-        let count = points.count(&stage.scene.points, at.x, -at.y, depths);
-        let paint = V3::splat(light_count(count));
+        let reach = tile.reach((x % TILE, y % TILE), stage.quality.light_tile as usize);
+        let count = |points: &Points| points.count(&stage.scene.points, at.x, -at.y, reach);
+        let count = stage.points.as_ref().map_or(0, count);
+        let paint = ramp(&COUNTS, splat(count as i32 as f32));
         colour = colour + (paint - colour) * splat(stage.scene.light_count);
     }
     colour
@@ -138,25 +142,15 @@ fn print(stage: &Stage, mut colour: V3, (x, y): (usize, usize), n: u64, out: &mu
 const FILLED: Vec3 = Vec3::new(0.878, 0.204, 0.169);
 const INTERPOLATED: Vec3 = Vec3::new(0.176, 0.42, 1.0);
 
-/// Colours for 1, 4, 12, 32 and 64 small lights: #1B2A7A, #5A3FC0, #C05A9E, #FFB347, #FFF3D6.
-const COUNTS: [(f32, Vec3); 5] = [
-    (1.0, Vec3::new(0.106, 0.165, 0.478)),
-    (4.0, Vec3::new(0.353, 0.247, 0.753)),
-    (12.0, Vec3::new(0.753, 0.353, 0.62)),
-    (32.0, Vec3::new(1.0, 0.702, 0.278)),
-    (64.0, Vec3::new(1.0, 0.953, 0.839)),
+/// Colours for 0, 1, 4, 12, 32 and 64 small lights: black, #1B2A7A, #5A3FC0, #C05A9E, #FFB347, #FFF3D6.
+static COUNTS: [Stop; 6] = [
+    Stop { y: 0.0, colour: Vec3::ZERO },
+    Stop { y: 1.0, colour: Vec3::new(0.106, 0.165, 0.478) },
+    Stop { y: 4.0, colour: Vec3::new(0.353, 0.247, 0.753) },
+    Stop { y: 12.0, colour: Vec3::new(0.753, 0.353, 0.62) },
+    Stop { y: 32.0, colour: Vec3::new(1.0, 0.702, 0.278) },
+    Stop { y: 64.0, colour: Vec3::new(1.0, 0.953, 0.839) },
 ];
-
-/// Colour that stands for the number of small lights in a tile.
-#[inline(never)]
-fn light_count(count: u32) -> Vec3 {
-    let (mut from, mut colour) = (0.0, Vec3::ZERO);
-    for (to, next) in COUNTS {
-        colour += (next - colour) * ((count as f32 - from) / (to - from)).clamp(0.0, 1.0);
-        from = to;
-    }
-    colour
-}
 
 /// Shows how a pixel was got: 45 % red or blue, darker at the upper and left edge of large cells.
 fn overlay(tile: &Tile, (x, y): (usize, usize), colour: Vec3) -> Vec3 {

@@ -170,7 +170,16 @@ impl<'a> Stage<'a> {
         } else {
             features::SMOOTH && self.scene.meshes.facet(shape - count).0.mesh().is_smooth()
         };
-        if vague { Rung::Colour } else { self.quality.rung }
+        let most = if vague { Rung::Colour } else { self.quality.rung };
+        // Nor is the hidden share of a shining rectangle.
+        let soft = (0..self.lamps.len()).any(|lamp| self.shadow_rays(lamp) > 1);
+        if soft { most.min(Rung::Light) } else { most }
+    }
+
+    /// Shadow rays to a lamp.
+    pub fn shadow_rays(&self, lamp: usize) -> u32 {
+        let soft = features::SOFT_SHADOWS && self.scene.soft && self.lamps[lamp].is_emitter;
+        if soft { self.quality.shadow_samples } else { 1 }
     }
 
     /// Mask of the shapes that may show in the square of `side` px at `corner`, see

@@ -1,7 +1,7 @@
 //! Other ways to look at a scene than by its light: what the first rays meet, drawn as it is.
 //!
 //! No light, no adaptive sampling, no post: one ray through the middle of each pixel. Only the view
-//! of the sampling is an ordinary frame, with the overlay all over it.
+//! of the sampling and that of the small lights are ordinary frames, with an overlay all over.
 
 use super::{Renderer, Stage};
 use crate::counters::{Counter, Counters};
@@ -25,6 +25,9 @@ pub enum View {
     Albedo,
     /// The finished frame with how each pixel was got: see [`Scene::overlay`].
     Sampling,
+    /// How many small lights reach the surfaces of each tile: black for none, blue for one, by violet
+    /// and orange to white for 64 and more. See [`Scene::light_count`].
+    Lights,
     /// Tests and steps that the first ray took, linear from black for none to white for
     /// [`MOST_STEPS`] and more. Needs the feature `counters`, else all is black.
     Steps,
@@ -38,18 +41,23 @@ pub const MOST_STEPS: f32 = 127.5;
 
 impl View {
     /// All views with their names.
-    pub const ALL: [(&str, View); 5] = [
+    pub const ALL: [(&str, View); 6] = [
         ("normal", View::Normal),
         ("distance", View::Distance),
         ("albedo", View::Albedo),
         ("sampling", View::Sampling),
+        ("lights", View::Lights),
         ("steps", View::Steps),
     ];
 
     /// Draws frame `n` of a scene as 0RGB rows into `pixels`; `n` as for [`Renderer::frame`].
     pub fn draw(self, scene: &Scene, n: u64, size: (u32, u32), quality: &Quality, pixels: &mut [u32]) {
-        if self == View::Sampling {
-            let scene = Scene { overlay: 1.0, effects: Vec::new(), ..scene.clone() };
+        let (sampling, lights) = (self == View::Sampling, self == View::Lights);
+        if sampling || lights {
+            let mut scene = scene.clone();
+            scene.effects.clear();
+            // A share of the width, and a weight.
+            *if sampling { &mut scene.overlay } else { &mut scene.light_count } = 1.0;
             return Renderer::default().frame(&scene, n, size, quality, pixels);
         }
         let stage = &Stage::new(scene, quality, size.0, size.1);

@@ -120,6 +120,11 @@ impl<'a> Sample<'a> {
         }
         Some(&stage.scene.materials[shape.material()])
     }
+    /// Whether the first hit is of a mesh with interpolated normals.
+    pub fn is_of_smooth_mesh(self, stage: &Stage) -> bool {
+        let facet = (self.id() >= 0.0).then(|| stage.scene.shape(self.id() as usize >> 2));
+        matches!(facet, Some(Shape::Facet(instance, _)) if instance.mesh().is_smooth())
+    }
     /// The voxels that the first hit is of.
     pub fn voxels<'s>(self, stage: &Stage<'s>) -> Option<&'s Voxels> {
         match (self.id() >= 0.0).then(|| stage.scene.shape(self.id() as usize >> 2))? {

@@ -218,9 +218,11 @@ impl Known<'_> {
         self.all(|s, first| s.signature() == first.signature())
     }
 
-    /// Whether what the samples saw differs visibly.
+    /// Whether what the samples saw differs visibly. A smooth mesh is one surface that may stand before
+    /// itself.
     fn is_edge(&self, stage: &Stage) -> bool {
-        let alike = self.same_surface() && self.same_signature();
+        let folds = features::SMOOTH && self.samples[0].is_of_smooth_mesh(stage);
+        let alike = !folds && self.same_surface() && self.same_signature();
         !alike && !self.agree_within(2.0 * stage.quality.tolerance)
     }
 
@@ -341,7 +343,13 @@ impl Surroundings {
             let position = stage.lamps[lamp].position;
             let faces = known.samples[..4].iter().any(|s| s.normal().dot(position - s.point()) > 0.0);
             let lit = faces && known.samples[..4].iter().all(|s| s.code(lamp) != BLOCKED);
-            if (self.shadows[lamp] == 0 && meshes.is_empty()) || !lit || !stage.lamps[lamp].lights(material) {
+            // Soft shadows rest on the samples alone.
+            let soft = stage.shadow_rays(lamp) > 1;
+            if (self.shadows[lamp] == 0 && meshes.is_empty())
+                || soft
+                || !lit
+                || !stage.lamps[lamp].lights(material)
+            {
                 continue;
             }
             let to = points.map(|p| p - position);

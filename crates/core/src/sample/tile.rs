@@ -102,9 +102,9 @@ impl Tile {
         Vec3::new(self.rgb[0][i], self.rgb[1][i], self.rgb[2][i])
     }
 
-    /// Least and greatest depth of the surfaces in the square of `side` px that holds a pixel; none
-    /// where only the background shows.
-    pub fn depths(&self, (x, y): (usize, usize), side: usize) -> [f32; 2] {
+    /// The greatest and the least nearness of the surfaces in the square of `side` px that holds a
+    /// pixel; 0 and infinity where only the background shows.
+    pub fn reach(&self, (x, y): (usize, usize), side: usize) -> [f32; 2] {
         let side = side.min(TILE);
         let (left, top) = (x / side * side, y / side * side);
         let (mut nearest, mut farthest) = (0.0_f32, f32::INFINITY);
@@ -116,7 +116,7 @@ impl Tile {
                 }
             }
         }
-        [1.0 / nearest, 1.0 / farthest]
+        [nearest, farthest]
     }
 
     /// Sets the pixel at (x, y).

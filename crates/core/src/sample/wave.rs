@@ -341,8 +341,11 @@ impl Found {
     /// Hash of what each lane saw.
     fn hash(&self, stage: &Stage) -> U {
         let mut h = mix_x8(self.block.id.to_bits() ^ self.part.to_bits(), self.block.signature);
-        for code in &self.block.codes[..stage.lamps.len().min(MAX_LAMPS)] {
-            h = mix_x8(h, code.to_bits());
+        for (k, code) in self.block.codes[..stage.lamps.len().min(MAX_LAMPS)].iter().enumerate() {
+            // Soft shadows have no edges.
+            if stage.shadow_rays(k) == 1 {
+                h = mix_x8(h, code.to_bits());
+            }
         }
         h
     }

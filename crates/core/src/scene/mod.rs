@@ -147,6 +147,9 @@ pub struct Scene {
     pub bounces: u32,
     /// Whether a rough mirror is drawn as several rays where the quality has them; else one stands for them.
     pub rough: bool,
+    /// Whether shining rectangles cast soft shadows, where the quality has rays for them; else those of
+    /// lamps in their middles.
+    pub soft: bool,
     /// Light from everywhere below (normal down) and above (normal up), mixed by the normal's y.
     pub ambient: [Vec3; 2],
     /// Haze, if the scene has any.

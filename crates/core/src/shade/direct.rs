@@ -19,8 +19,12 @@ use crate::trace::{BLOCKED, Rays8, Surface, ambient_share, occlusion};
 /// Lamps that may cast shadows; those after them light without.
 pub const MAX_LAMPS: usize = 8;
 
-/// Visibility codes of a packet, per lamp: see [`occlusion`].
+/// Visibility codes of a packet, per lamp: see [`occlusion`]. Between 0 and [`BLOCKED`] stands the
+/// hidden share of a shining rectangle, by which its light is less.
 pub type Codes = [F; MAX_LAMPS];
+
+/// Rays of a soft shadow that must agree, for the others to be spared.
+const AGREE: u32 = 4;
 
 /// Where the visibility of the lamps comes from.
 pub enum Visibility<'a> {
@@ -149,31 +153,49 @@ pub fn direct(
     let mirrors = s.value(Channel::Reflection).simd_gt(zero);
     let start = s.point + s.facing * s.clearance;
     for (k, lamp) in stage.lamps.iter().enumerate() {
-        let (to_lamp, d2, l) = towards(lamp.position, start);
-        let n_l = s.normal.dot(l);
-        let reach = lamp.lobe(-l);
+        let aim = Aim::at(lamp.position, s, start);
+        let reach = lamp.lobe(-aim.l);
         // Mirrors show shining rectangles themselves, in place of a highlight.
         let plain = if lamp.is_emitter { diffuse | (shiny & !mirrors) } else { diffuse | shiny };
-        let wanted = active & plain & n_l.simd_gt(zero) & s.facing.dot(l).simd_gt(zero) & reach.simd_gt(zero);
+        let wanted = active & plain & aim.faces & reach.simd_gt(zero);
         if let (Some(code), Visibility::Trace(candidates)) = (codes.get_mut(k), &visibility) {
             *code = zero;
-            if (candidates[k] != 0 || !stage.scene.meshes.is_empty()) && wanted.any() {
-                let count = wanted.to_bitmask().count_ones() as usize;
-                counters.add(Counter::ShadowRays, count);
-                counters.add_rays(count);
-                let rays = Rays8 { origin: start, direction: to_lamp };
+            let samples = stage.shadow_rays(k);
+            // Candidates are the shapes that may hide the lamp's middle.
+            let candidates = if samples > 1 { u64::MAX } else { candidates[k] };
+            if (candidates != 0 || !stage.scene.meshes.is_empty()) && wanted.any() {
                 counters.watch.enter(Phase::Tracing);
-                let found = occlusion(
-                    stage.scene,
-                    &stage.quality,
-                    &stage.bits,
-                    &rays,
-                    wanted,
-                    candidates[k],
-                    counters,
-                );
+                let (mut hidden, mut open) = (zero, wanted);
+                for sample in 0..samples {
+                    if sample == AGREE {
+                        open &= hidden.simd_lt(zero) & hidden.simd_gt(splat(-(AGREE as f32)));
+                    }
+                    if !open.any() {
+                        break;
+                    }
+                    let count = open.to_bitmask().count_ones() as usize;
+                    counters.add(Counter::ShadowRays, count);
+                    counters.add_rays(count);
+                    counters.add(Counter::SoftShadowRays, usize::from(samples > 1));
+                    let to_point = V3::splat(lamp.position + lamp.aside(sample)) - start;
+                    let rays = Rays8 { origin: start, direction: to_point };
+                    let found = occlusion(
+                        stage.scene,
+                        &stage.quality,
+                        &stage.bits,
+                        &rays,
+                        open,
+                        candidates,
+                        counters,
+                    );
+                    hidden += found.fast_min(zero) & open;
+                    *code = code.fast_max(found & open);
+                }
+                // Of lanes that agreed none or all of the rays are hidden.
+                let settled = hidden.simd_lt(zero) & !open;
+                let share = settled.select(splat(BLOCKED), hidden * splat(1.0 / samples as f32));
+                *code = share.simd_lt(zero).select(share, *code);
                 counters.watch.enter(Phase::Shading);
-                *code = found & wanted;
             }
         }
         let code = codes.get(k).copied().unwrap_or(zero);
@@ -182,38 +204,68 @@ pub fn direct(
             continue;
         }
         counters.add(Counter::LightEvaluations, 8);
-        let mut light = tinted(stage, lamp, code) * (lit & (reach / d2));
+        let open = F::ONE + code.fast_min(zero);
+        let mut light = tinted(stage, lamp, code) * (lit & (reach * open / aim.d2));
         if let Some(volume) = stage.volume.filter(|_| features::SMOKE) {
-            light = light * volume.shadow(k, start, to_lamp);
+            light = light * volume.shadow(k, start, aim.way);
         }
         let hidden = if lamp.is_emitter { mirrors } else { zero };
-        sum.highlight += (light * highlight(stage, s, l, v, n_l, counters)) & !hidden;
-        sum.irradiance += light * n_l;
+        sum.add(stage, s, v, &aim, (light, hidden), counters);
     }
     if let Some(points) = stage.points.as_ref().filter(|_| features::POINTS) {
         points.near(start, active, stage.quality.cull, |index| {
             let Some(light) = stage.scene.points.get(index) else { return };
             counters.add(Counter::PointLights, 8);
-            let (_, d2, l) = towards(light.position, start);
-            let n_l = s.normal.dot(l);
-            let r2 = light.radius * light.radius;
-            let lit = active & n_l.simd_gt(zero) & s.facing.dot(l).simd_gt(zero) & d2.simd_lt(splat(r2));
-            let x = d2 * splat(1.0 / r2);
+            let aim = Aim::at(light.position, s, start);
+            let x = aim.d2 * splat(1.0 / (light.radius * light.radius));
             let window = (F::ONE - x * x).fast_max(zero);
-            let light = V3::splat(light.colour) * (lit & (window * window / d2));
-            sum.highlight += light * highlight(stage, s, l, v, n_l, counters);
-            sum.irradiance += light * n_l;
+            let light = V3::splat(light.colour) * (active & aim.faces & (window * window / aim.d2));
+            sum.add(stage, s, v, &aim, (light, zero), counters);
         });
     }
     sum
 }
 
-/// The way from points to a lamp, its square length and its direction.
-#[inline(always)]
-fn towards(position: Vec3, start: V3) -> (V3, F, V3) {
-    let way = V3::splat(position) - start;
-    let d2 = way.dot(way).fast_max(splat(1e-8));
-    (way, d2, way * (F::ONE / d2.sqrt()))
+/// The way from surfaces to a lamp.
+struct Aim {
+    way: V3,
+    /// Its square length.
+    d2: F,
+    /// Its direction.
+    l: V3,
+    /// Cosine to the normal.
+    n_l: F,
+    /// Surfaces that face the lamp.
+    faces: F,
+}
+
+impl Aim {
+    #[inline(never)]
+    fn at(position: Vec3, s: &Surface, start: V3) -> Aim {
+        let way = V3::splat(position) - start;
+        let d2 = way.dot(way).fast_max(splat(1e-8));
+        let l = way * (F::ONE / d2.sqrt());
+        let n_l = s.normal.dot(l);
+        let faces = n_l.simd_gt(F::ZERO) & s.facing.dot(l).simd_gt(F::ZERO);
+        Aim { way, d2, l, n_l, faces }
+    }
+}
+
+impl Lit {
+    /// Adds the light of a lamp; its highlight is not seen in lanes `hidden`.
+    #[inline(never)]
+    fn add(
+        &mut self,
+        stage: &Stage,
+        s: &Surface,
+        v: V3,
+        aim: &Aim,
+        (light, hidden): (V3, F),
+        counters: &mut Counters,
+    ) {
+        self.highlight += (light * highlight(stage, s, aim.l, v, aim.n_l, counters)) & !hidden;
+        self.irradiance += light * aim.n_l;
+    }
 }
 
 /// The highlight of a lamp in unit direction `l`, by the scene's reflection model.

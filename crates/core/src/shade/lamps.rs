@@ -2,6 +2,7 @@
 
 use crate::math::Vec3;
 use crate::math::lanes::{F, V3, splat};
+use crate::math::sampling::r2;
 use crate::scene::{LightKind, Material, Scene};
 use std::f32::consts::PI;
 
@@ -17,6 +18,8 @@ pub struct Lamp {
     /// The cosine c to the axis gives (c - outer) * gain, kept in 0..1.
     outer: f32,
     gain: f32,
+    /// Half of the sides of the rectangle that the lamp stands for, 0 for lamps without extent.
+    sides: [Vec3; 2],
     /// The lamp stands for a rectangle, whose highlight mirrors show by themselves.
     pub is_emitter: bool,
 }
@@ -25,25 +28,33 @@ pub struct Lamp {
 pub fn lamps(scene: &Scene) -> Vec<Lamp> {
     let count = scene.lights.len();
     let lamp = |i: usize| {
-        let (position, colour, axis, inner, outer) = if i < count {
+        let (position, colour, axis, sides, inner, outer) = if i < count {
             let light = &scene.lights[i];
             let (axis, inner, outer) = match light.kind {
                 LightKind::Point => (Vec3::ZERO, -1.0, -2.0),
                 LightKind::Spot { direction, inner, outer } => (direction, inner, outer),
             };
-            (light.position, light.colour, axis, inner, outer)
+            (light.position, light.colour, axis, [Vec3::ZERO; 2], inner, outer)
         } else {
             let e = &scene.emitters[i - count];
             let colour = e.radiance * (e.half[0] * e.half[1] * 4.0 / PI);
-            (e.centre, colour, e.normal(), 1.0, 0.0)
+            (e.centre, colour, e.normal(), [e.u * e.half[0], e.v * e.half[1]], 1.0, 0.0)
         };
         let gain = 1.0 / (inner - outer).max(1e-6);
-        Lamp { position, colour, axis, outer, gain, is_emitter: i >= count }
+        Lamp { position, colour, axis, outer, gain, sides, is_emitter: i >= count }
     };
     (0..count + scene.emitters.len()).map(lamp).collect()
 }
 
 impl Lamp {
+    /// From the middle of the rectangle to one of its points; the first is the middle itself. The same
+    /// for all places that are lit: steps of so few rays are finer to look at than their noise, and
+    /// what runs smoothly can be interpolated.
+    pub fn aside(&self, sample: u32) -> Vec3 {
+        let at = r2(sample) * 2.0 - 1.0;
+        self.sides[0] * at.x + self.sides[1] * at.y
+    }
+
     /// Whether a material shows this lamp's direct light at all. Mirrors show shining rectangles
     /// themselves, in place of a highlight.
     pub fn lights(&self, material: &Material) -> bool {

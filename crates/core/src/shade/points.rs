@@ -7,7 +7,7 @@
 //! of these is enough: a ball meets a column if it lies not wholly behind one of the column's two
 //! planes through the eye.
 
-use crate::cull::View;
+use crate::cull::{Bounds, View};
 use crate::math::Vec3;
 use crate::math::lanes::{F, V3, splat};
 use crate::scene::PointLight;
@@ -46,8 +46,7 @@ impl Points {
     pub fn new(lights: &[PointLight], view: View, size: [u32; 2], pixel: f32, side: u32) -> Self {
         let side = pixel * side as f32;
         let corner = size.map(|n| -0.5 * n as f32 * pixel);
-        let count = corner.map(|c| (-2.0 * c / side) as usize + 1);
-        let mut bands = count.map(|n| vec![Mask::default(); n]);
+        let mut bands = corner.map(|c| vec![Mask::default(); (-2.0 * c / side) as usize + 1]);
         let mut eights = Vec::new();
         for (i, light) in lights.iter().take(MAX_POINTS).enumerate() {
             if i % 8 == 0 {
@@ -57,16 +56,17 @@ impl Points {
             eight.position.set_lane(i % 8, light.position);
             eight.radius.as_mut_array()[i % 8] = light.radius;
             let v = view.local(light.position);
-            let radius = light.radius * 1.001;
             for (axis, bands) in bands.iter_mut().enumerate() {
                 let at = [v.x, -v.y][axis];
-                for (k, mask) in bands.iter_mut().enumerate() {
-                    let edge = corner[axis] + k as f32 * side;
-                    let (lo, hi) = (edge - SLACK * side, edge + (1.0 + SLACK) * side);
-                    let reach = |edge: f32| radius * (1.0 + edge * edge).sqrt();
-                    if at - v.z * lo >= -reach(lo) && at - v.z * hi <= reach(hi) && v.z + radius > 0.0 {
+                let mut edge = corner[axis] - SLACK * side;
+                for mask in bands {
+                    // Over the plane through the eye and an edge, to the right or down.
+                    let over = |edge: f32| (at - v.z * edge) / (1.0 + edge * edge).sqrt();
+                    let inside = over(edge).min(-over(edge + side * (1.0 + 2.0 * SLACK))).min(v.z);
+                    if inside > light.radius * -1.001 {
                         mask[i / 64] |= 1 << (i % 64);
                     }
+                    edge += side;
                 }
             }
         }
@@ -85,22 +85,29 @@ impl Points {
         Some(std::array::from_fn(|i| column[i] & row[i]))
     }
 
-    /// How many lights reach the surfaces of a tile, [`Self::tile`], that lie between two depths.
-    pub fn count(&self, lights: &[PointLight], x: f32, y: f32, depths: [f32; 2]) -> u32 {
-        let mask = self.tile(x, y).unwrap_or_default();
-        let reaches = |&(i, light): &(usize, &PointLight)| {
-            let z = self.view.local(light.position).z;
-            let meets = z + light.radius > depths[0] && z - light.radius < depths[1];
-            mask[i / 64] >> (i % 64) & 1 == 1 && meets
-        };
-        lights.iter().take(MAX_POINTS).enumerate().filter(reaches).count() as u32
+    /// How many lights reach the surfaces of a tile, [`Self::tile`], between the depths whose inverses are
+    /// given, the greater one first.
+    pub fn count(&self, lights: &[PointLight], x: f32, y: f32, [near, far]: [f32; 2]) -> u32 {
+        let mut count = 0;
+        for (lights, mut bits) in lights.chunks(64).zip(self.tile(x, y).unwrap_or_default()) {
+            while bits != 0 {
+                let light = &lights[bits.trailing_zeros() as usize];
+                let z = self.view.local(light.position).z;
+                count += u32::from((z + light.radius) * near > 1.0 && (z - light.radius) * far < 1.0);
+                bits &= bits - 1;
+            }
+        }
+        count
     }
 
     /// Calls `light` with the index of each light whose ball meets the box around the points in
     /// lanes `active`, in ascending order.
     #[inline(always)]
     pub fn near(&self, points: V3, active: F, cull: bool, mut light: impl FnMut(usize)) {
-        let (lo, hi, mask) = self.around(points, active, cull);
+        let mut bounds = Bounds::EMPTY;
+        bounds.add(points, active);
+        let Some((lo, hi)) = bounds.corners() else { return };
+        let mask = self.around(points, active, cull);
         for (k, eight) in self.eights.iter().enumerate() {
             let among = mask[k / 8] >> (k % 8 * 8) & 255;
             if among == 0 {
@@ -119,25 +126,19 @@ impl Points {
         }
     }
 
-    /// Bounds of the points in lanes `active`, and the lights of all tiles that show them.
+    /// Lights of all tiles that show the points in lanes `active`.
     #[inline(never)]
-    fn around(&self, points: V3, active: F, cull: bool) -> (Vec3, Vec3, Mask) {
-        let (mut lo, mut hi) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+    fn around(&self, points: V3, active: F, cull: bool) -> Mask {
         let mut mask = Mask::default();
-        for lane in 0..8 {
-            if active.to_bitmask() >> lane & 1 == 0 {
-                continue;
-            }
-            let p = points.lane(lane);
-            (lo, hi) = (lo.min(p), hi.max(p));
-            let v = self.view.local(p);
+        for lane in (0..8).filter(|lane| active.to_bitmask() >> lane & 1 == 1) {
+            let v = self.view.local(points.lane(lane));
             let seen = if v.z > 0.0 && cull { self.tile(v.x / v.z, -v.y / v.z) } else { None };
             let seen = seen.unwrap_or([u64::MAX; MAX_POINTS / 64]);
             for (word, seen) in mask.iter_mut().zip(seen) {
                 *word |= seen;
             }
         }
-        (lo, hi, mask)
+        mask
     }
 }
 
