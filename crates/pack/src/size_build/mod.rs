@@ -33,10 +33,6 @@ const RUSTFLAGS: &[&str] = &[
     "-Cforce-unwind-tables=no",
     // At a fixed address: no relocations. What the linker needs besides is in build.rs.
     "-Crelocation-model=static",
-    // The C library's maths before the standard library's copy of it, which is larger.
-    "-Zpre-link-arg=-Wl,--no-as-needed",
-    "-Zpre-link-arg=-lm",
-    "-Zpre-link-arg=-Wl,--as-needed",
     // The basic register allocator never splits a live range: fewer moves and more equal code for the packer,
     // 2,400 bytes, for no more instructions executed.
     "-Cllvm-args=-regalloc=basic",
@@ -102,7 +98,8 @@ pub fn build(root: &Path, output: &Path) -> Result<Built, Error> {
         .env(order::VARIABLE, "1")
         .env("CARGO_ENCODED_RUSTFLAGS", RUSTFLAGS.join("\x1f"))
         .env("CFLAGS_x86_64_unknown_linux_gnu", CFLAGS);
-    if let Some(source) = std_source::prepare(&toolchain.library, &workspace.join("std"))? {
+    if let Some(source) = std_source::prepare(&toolchain.library, &workspace.join("std"), &target_directory)?
+    {
         command.env(std_source::VARIABLE, source);
     }
     let told = command.output().map_err(Error::file(&toolchain.cargo))?;
