@@ -282,7 +282,7 @@ impl V3 {
     }
 
     /// The greatest size of a coordinate; a NaN among them may show or not.
-    #[inline(always)]
+    #[inline(never)]
     pub fn max_abs(self) -> F {
         self.x.abs().fast_max(self.y.abs()).fast_max(self.z.abs())
     }

@@ -138,14 +138,15 @@ fn split_once<'a>(text: &'a str, part: &str) -> Option<(&'a str, &'a str)> {
     (!after.contains(part)).then_some((before, after))
 }
 
-/// Writes a file unless it has these bytes already.
-pub fn write_if_new(path: &Path, bytes: &[u8]) -> Result<(), Error> {
+/// Writes a file unless it has these bytes already; whether it did.
+pub fn write_if_new(path: &Path, bytes: &[u8]) -> Result<bool, Error> {
     if std::fs::read(path).is_ok_and(|old| old == bytes) {
-        return Ok(());
+        return Ok(false);
     }
     let directory = path.parent().unwrap_or(Path::new("."));
     std::fs::create_dir_all(directory).map_err(Error::file(directory))?;
-    std::fs::write(path, bytes).map_err(Error::file(path))
+    std::fs::write(path, bytes).map_err(Error::file(path))?;
+    Ok(true)
 }
 
 #[cfg(test)]

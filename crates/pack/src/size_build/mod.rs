@@ -91,7 +91,8 @@ pub fn build(root: &Path, output: &Path) -> Result<PathBuf, Error> {
         .env(order::VARIABLE, "1")
         .env("CARGO_ENCODED_RUSTFLAGS", RUSTFLAGS.join("\x1f"))
         .env("CFLAGS_x86_64_unknown_linux_gnu", CFLAGS);
-    if let Some(source) = std_source::prepare(&toolchain.library, &workspace.join("std"))? {
+    if let Some(source) = std_source::prepare(&toolchain.library, &workspace.join("std"), &target_directory)?
+    {
         command.env(std_source::VARIABLE, source);
     }
     let status = command.status().map_err(Error::file(&toolchain.cargo))?;

@@ -1,10 +1,14 @@
 //! A trimmed view of the standard library's source.
 //!
-//! Links to everything, and two edited files. Threads need not look themselves up, when they end,
+//! Links to everything, and three edited files. Threads need not look themselves up, when they end,
 //! in the table of those that have a stack for reporting overflows: without messages nothing is
-//! ever put there, but the table (a B-tree, 5 kB of code) would be linked. And a file that is
+//! ever put there, but the table (a B-tree, 5 kB of code) would be linked. A file that is
 //! opened in a senseless way is refused without words: an error with words can be printed, which
 //! brings the tables of printable characters along.
+//!
+//! And a panic is taken for what can't happen, as an index out of range is in C: the compiler leaves out the
+//! tests (900 bytes packed) that the ordinary build has, whose panics abort the program. Frames are pure
+//! functions of their number, and the same ones are rendered by both builds in the tests.
 //!
 //! Cargo takes the source from where the environment variable [`VARIABLE`] points, which its own
 //! tests use too. A compiler whose source looks different is used untrimmed; the intro is the
@@ -20,7 +24,7 @@ pub const VARIABLE: &str = "__CARGO_TESTS_ONLY_SRC_ROOT";
 /// An edited file, inside the directory `library`, and its new text; none if it isn't as expected.
 type Edit = (&'static str, fn(&str) -> Option<String>);
 
-const EDITS: [Edit; 2] = [
+const EDITS: [Edit; 3] = [
     ("std/src/sys/pal/unix/stack_overflow.rs", |text| {
         let unused = "\n        delete_current_info();\n";
         (text.matches(unused).count() == 1).then(|| text.replacen(unused, "\n", 1))
@@ -37,10 +41,16 @@ const EDITS: [Edit; 2] = [
         }
         (edited.len() < text.len()).then_some(edited)
     }),
+    ("core/src/panicking.rs", |text| {
+        let aborts = "if cfg!(panic = \"immediate-abort\") {\n        super::intrinsics::abort()\n";
+        let never = "if cfg!(panic = \"immediate-abort\") {\n        unsafe { super::hint::unreachable_unchecked() }\n";
+        text.contains(aborts).then(|| text.replace(aborts, never))
+    }),
 ];
 
-/// Makes the view in `output`, for the library's source in `library`; none if that is unknown.
-pub fn prepare(library: &Path, output: &Path) -> Result<Option<PathBuf>, Error> {
+/// Makes the view in `output`, for the library's source in `library`; none if that is unknown. If it has
+/// changed, what `compiled` holds is removed, since cargo believes that a standard library never does.
+pub fn prepare(library: &Path, output: &Path, compiled: &Path) -> Result<Option<PathBuf>, Error> {
     let mut edited = Vec::new();
     for (name, edit) in EDITS {
         let file = library.join(name);
@@ -59,7 +69,9 @@ pub fn prepare(library: &Path, output: &Path) -> Result<Option<PathBuf>, Error> 
                 std::fs::remove_file(&to).map_err(Error::file(&to))?;
             }
         }
-        write_if_new(&to, text.as_bytes())?;
+        if write_if_new(&to, text.as_bytes())? && compiled.exists() {
+            std::fs::remove_dir_all(compiled).map_err(Error::file(compiled))?;
+        }
     }
     Ok(Some(view))
 }
