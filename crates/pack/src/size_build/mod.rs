@@ -32,10 +32,6 @@ const RUSTFLAGS: &[&str] = &[
     "-Cforce-unwind-tables=no",
     // At a fixed address: no relocations. What the linker needs besides is in build.rs.
     "-Crelocation-model=static",
-    // The C library's maths before the standard library's copy of it, which is larger.
-    "-Zpre-link-arg=-Wl,--no-as-needed",
-    "-Zpre-link-arg=-lm",
-    "-Zpre-link-arg=-Wl,--as-needed",
     // The basic register allocator never splits a live range: fewer moves and more equal code for the packer,
     // 2,400 bytes, for no more instructions executed.
     "-Cllvm-args=-regalloc=basic",
