@@ -15,7 +15,7 @@
 //!
 //! ```
 //! use luc_core::{quality::Quality, render::Renderer, scene::*};
-//! use crate::math::Vec3;
+//! use luc_core::math::Vec3;
 //!
 //! let red = Material { colour: Vec3::new(0.8, 0.1, 0.1), ..Material::default() };
 //! let scene = Scene {

@@ -106,9 +106,9 @@ fn develop(stage: &Stage, tiles: &[Tile], glow: Option<&Picture>, (x, y): (usize
         }
     }
     if features::POINTS && stage.scene.light_count > 0.0 {
-        let at = stage.on_screen(x as f32 + 4.0, y as f32 + 0.5);
-        let reach = tile.reach((x % TILE, y % TILE), stage.quality.light_tile as usize);
-        let count = |points: &Points| points.count(&stage.scene.points, at.x, -at.y, reach);
+        let side = stage.quality.light_tile as usize;
+        let reach = tile.reach((x % TILE, y % TILE), side);
+        let count = |points: &Points| points.count(&stage.scene.points, [x / side, y / side], reach);
         let count = stage.points.as_ref().map_or(0, count);
         let paint = ramp(&COUNTS, splat(count as i32 as f32));
         colour = colour + (paint - colour) * splat(stage.scene.light_count);
