@@ -45,9 +45,9 @@ fn tell(what: std::fmt::Arguments) {
     }
 }
 
-/// The scene of a part's local frame, without the overlay.
+/// The scene of a part's local frame, without what shows how it was sampled.
 fn plain(part: &show::Part, frame: u64) -> Scene {
-    Scene { overlay: 0.0, ..(part.scene)(frame) }
+    Scene { overlay: 0.0, split: None, effects: Vec::new(), ..(part.scene)(frame) }
 }
 
 #[test]

@@ -154,12 +154,17 @@ fn named_in_the_manifest() -> Vec<String> {
         names.map(|name| name.trim_matches('"').trim_start_matches("luc-core/").to_owned()).collect()
     };
     let mut names = list("luc-core = { workspace", "features = [");
-    for (part, called) in [("smoke = [", cfg!(feature = "smoke")), ("swarm = [", cfg!(feature = "swarm"))] {
+    for (part, called) in [
+        ("smoke = [", cfg!(feature = "smoke")),
+        ("swarm = [", cfg!(feature = "swarm")),
+        ("cost = [", cfg!(feature = "cost")),
+    ] {
         if called {
             names.extend(list(part, "["));
         }
     }
     names.sort();
+    names.dedup();
     names
 }
 

@@ -186,11 +186,14 @@ fn growth(t: f32) -> f32 {
     1.0 + x * x * (2.25 + 3.25 * x)
 }
 
-/// All that has grown so far, nearest bay first.
-fn cathedral(t: f32) -> Assembly {
+/// All that has grown so far of this many bays, nearest first, with or without the rose.
+pub fn cathedral(t: f32, bays: usize, rose: bool) -> Assembly {
     let meshes = meshes();
-    let mut instances = vec![Instance::new(&meshes[5], Mat3::IDENTITY, ROSE, 0)];
-    for k in 0..18 {
+    let mut instances = Vec::new();
+    if rose {
+        instances.push(Instance::new(&meshes[5], Mat3::IDENTITY, ROSE, 0));
+    }
+    for k in 0..2 * bays {
         let bay = k / 2;
         let side = if k % 2 == 0 { 1.0 } else { -1.0 };
         let way = if (bay * 3 + k) % 4 < 2 { 1.0 } else { -1.0 };
@@ -286,7 +289,7 @@ pub fn scene(frame: u64) -> Scene {
         glow.colour *= 1.0 + 0.4 * pulse(&KICK, frame, 7.0);
     }
     s.lights[1].position += position;
-    s.meshes = cathedral(t);
+    s.meshes = cathedral(t, 9, true);
     if tilt > 0.27 {
         // The floor has left the picture.
         s.planes.clear();

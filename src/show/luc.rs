@@ -46,7 +46,7 @@ const FIRE: &[Stop] = &[
 const SHOWN: [Key; 2] = [key(8.0, 0.0, Ease::Linear), key(9.6, 28.0, Ease::Step)];
 
 /// The line of text before the letters.
-pub const LINE: Line = Line {
+pub const LINE: Line<'static> = Line {
     words: b"64 KB . EVERY RAY ON THE CPU",
     origin: v(-2.85, 0.08, 4.7),
     right: 0.036,

@@ -4,6 +4,8 @@
 //! pure function of its local frame, so any frame can be rendered on its own and nothing drifts.
 
 mod blobs;
+#[cfg(feature = "cost")]
+mod cost;
 mod end;
 mod facets;
 mod gold;
@@ -66,8 +68,13 @@ pub const PARTS: &[Part] = &[
     part("smoke", &score::SMOKE, smoke::scene),
     #[cfg(feature = "swarm")]
     part("swarm", &score::SWARM, swarm::scene),
+    #[cfg(feature = "cost")]
+    part("cost", &score::COST, cost::scene),
     part("end", &score::END, end::scene),
 ];
+
+/// Parts that are here by a feature of their own, with their names.
+pub const OPTIONAL: &[&str] = &["smoke", "swarm", "cost"];
 
 /// Length of the whole show in frames; frame n is frame n mod this.
 pub const FRAMES: u64 = {

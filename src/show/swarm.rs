@@ -196,7 +196,7 @@ static STILL: Still = Still {
         surface(v(0.12, 0.1, 0.17), 0.42, 0.35),
         surface(v(0.12, 0.1, 0.17), 0.42, 0.35),
     ],
-    lights: &[Lamp { position: v(-50.0, 40.0, 90.0), colour: times(v(0.55, 0.2, 0.6), 5000.0), spot: None }],
+    lights: &[Lamp { position: v(-50.0, 40.0, 90.0), colour: times(v(0.55, 0.2, 0.6), 7000.0), spot: None }],
     panels: &[Panel {
         centre: v(-30.0, 30.0, -50.0),
         target: v(0.0, 0.0, -10.0),
@@ -253,12 +253,13 @@ pub fn scene(frame: u64) -> Scene {
         let kind = i as usize % 3;
         // The plucks reach the fireflies one after the other.
         let wave = 0.7 + 0.7 * pulse(&PLUCK, frame.saturating_sub((6.0 * x) as i32 as u64), 6.0);
-        s.points.push(PointLight { position, radius: 3.4, colour: LIGHT[kind] * (0.65 * wave) });
+        s.points.push(PointLight { position, radius: 2.7, colour: LIGHT[kind] * (0.8 * wave) });
         // Dim at both ends of the stream, and close to the eye.
         let far = position.distance(s.camera.position);
         let seen = (4.0 * x).min(4.0 * (corners - x)).min(0.25 * far).min(1.0);
         let shine = (1.9 + 10.0 / far).min(3.0) * wave * seen;
-        glow(&mut s, position, dice.roll(0.02, 0.05), SHINE[kind] * shine);
+        // Far ones stay nearly as wide as a pixel, so that they don't twinkle as they move.
+        glow(&mut s, position, dice.roll(0.02, 0.05).max(0.0006 * far), SHINE[kind] * shine);
     }
     let mut dice = Dice(0);
     for _ in 0..120 {

@@ -7,19 +7,38 @@
 use luc_core::math::Vec3;
 use luc_core::scene::Beam;
 
-/// After each space a letter's name, and the points of its lines, x and y; a comma lifts the pen.
-const FONT: &[u8] = b"\x20 10 A000415253430,0232 B000525342303,2332312000 C3425150401102031 E30000535,0323 \
-    F000535,0323 G34251504011020313222 H0005,3035,0333 I0005 K0005,3502,1330 L050030 N00053035 \
-    O102031342515040110 P00052534332202 R00052534332202,1230 S3425150413233231201001 T0545,2520 \
-    U050110203135 V052045 W0510243045 Y052245,2220 63425150401102031322303 432022520 .2222";
+/// After each space a letter's name, and the points of its lines, x and y; a comma lifts the pen, but as a name
+/// it is the decimal point.
+macro_rules! font {
+    ($($more:literal)?) => {
+        concat!(
+            "  10 A000415253430,0232 B000525342303,2332312000 C3425150401102031 E30000535,0323 \
+             F000535,0323 G34251504011020313222 H0005,3035,0333 I0005 K0005,3502,1330 L050030 N00053035 \
+             O102031342515040110 P00052534332202 R00052534332202,1230 S3425150413233231201001 T0545,2520 \
+             U050110203135 V052045 W0510243045 Y052245,2220 63425150401102031322303 432022520 .2222",
+            $($more)?
+        )
+    };
+}
+
+/// The letters of the words that the program has.
+#[cfg(not(feature = "cost"))]
+const FONT: &[u8] = font!().as_bytes();
+#[cfg(feature = "cost")]
+const FONT: &[u8] = font!(
+    " D000525343120,0020 d3530,331302011030 M0005234540 ,0000 0102031342515040110 1042520,1030 204152534330030 \
+     304152534332313,233231201001 5350503233231201001 7053510 81304152534231302011020313223 \
+     90110203134251504031232"
+)
+.as_bytes();
 
 /// Grid steps between two letters.
 const GAP: f32 = 1.7;
 
 /// A line of text that stands or lies somewhere.
 #[derive(Clone, Copy)]
-pub struct Line {
-    pub words: &'static [u8],
+pub struct Line<'a> {
+    pub words: &'a [u8],
     /// Lower left corner of its first letter, world.
     pub origin: Vec3,
     /// A step of the grid to the right, world units along x.
@@ -75,7 +94,13 @@ mod tests {
     #[test]
     fn the_words_of_the_show_have_their_letters_and_no_more() {
         let lines = super::super::end::WORDS.into_iter().chain([super::super::luc::LINE.words]);
-        let text: Vec<u8> = lines.flatten().copied().collect();
+        #[allow(unused_mut, reason = "not all programs have all parts")]
+        let mut text: Vec<u8> = lines.flatten().copied().collect();
+        #[cfg(feature = "cost")]
+        {
+            text.extend(super::super::cost::CAPTIONS.concat());
+            text.extend(b"0123456789");
+        }
         for name in &text {
             assert!(FONT.windows(2).any(|pair| pair == [b' ', *name]), "{}", char::from(*name));
         }

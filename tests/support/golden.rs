@@ -10,7 +10,7 @@ use std::path::PathBuf;
 pub const SIZE: (u32, u32) = (320, 180);
 
 /// Part and local frame of the kept pictures.
-pub const FRAMES: [(&str, u64); 30] = [
+pub const FRAMES: [(&str, u64); 32] = [
     ("blobs", 0),     // the drop: the lattice closed
     ("blobs", 400),   // satellites fly
     ("blobs", 1199),  // last frame
@@ -37,6 +37,8 @@ pub const FRAMES: [(&str, u64); 30] = [
     ("end", 320),     // all words
     ("end", 479),     // last frame, which Lúč's first follows
     ("smoke", 0),     // the house before the fire
+    ("cost", 0),      // first frame: nearly all traced
+    ("cost", 719),    // last frame: half and half
     ("smoke", 421),   // between two steps: the first smoke
     ("swarm", 0),     // first frame: in the nave
     ("swarm", 560),   // before the ruin
@@ -47,7 +49,7 @@ pub const FRAMES: [(&str, u64); 30] = [
 pub type Frame = (&'static str, u64, &'static str, (u32, u32));
 
 /// Frames whose fingerprints are kept.
-pub const FINGERPRINTS: [Frame; 32] = [
+pub const FINGERPRINTS: [Frame; 36] = [
     ("blobs", 12, "draft", (333, 187)),
     ("blobs", 700, "medium", (320, 180)),
     ("blobs", 950, "ultra", (320, 180)),
@@ -72,6 +74,10 @@ pub const FINGERPRINTS: [Frame; 32] = [
     ("facets", 480, "medium", (320, 180)),
     ("facets", 900, "ultra", (320, 180)),
     ("facets", 1200, "reference", (96, 54)),
+    ("cost", 100, "draft", (333, 187)),
+    ("cost", 300, "medium", (320, 180)),
+    ("cost", 480, "ultra", (320, 180)),
+    ("cost", 600, "reference", (96, 54)),
     ("smoke", 300, "ultra", (320, 180)),
     ("smoke", 420, "reference", (96, 54)),
     ("smoke", 700, "medium", (320, 180)),
@@ -84,11 +90,11 @@ pub const FINGERPRINTS: [Frame; 32] = [
 
 /// Whether a part is in the 64 kB file too.
 pub fn in_every_build(part: &str) -> bool {
-    part != "swarm"
+    part == "smoke" || !show::OPTIONAL.contains(&part)
 }
 
 /// Part and local frame of those whose value is kept for all builds, in `values.txt`.
-pub const VALUES: [(&str, u64); 19] = [
+pub const VALUES: [(&str, u64); 20] = [
     ("blobs", 200),
     ("blobs", 600),
     ("blobs", 1000),
@@ -105,6 +111,7 @@ pub const VALUES: [(&str, u64); 19] = [
     ("facets", 720),
     ("facets", 1260),
     ("end", 240),
+    ("cost", 400),
     ("smoke", 180),
     ("swarm", 300),
     ("swarm", 960),

@@ -16,6 +16,12 @@ macro_rules! counters {
         impl Counter {
             /// All counters in order, with what they count in words.
             pub const ALL: [(Counter, &str); [$($words,)*].len()] = [$((Counter::$name, $words),)*];
+
+            /// Whether rays are counted, each once: those of rough mirrors are among the reflected ones.
+            pub fn is_ray(self) -> bool {
+                use Counter::*;
+                matches!(self, PrimaryRays | ReflectedRays | RefractedRays | ScatterRays | ShadowRays)
+            }
         }
     };
 }
@@ -75,10 +81,12 @@ counters! {
     Levels "passes of colour mapping",
     Fringes "passes of chromatic aberration",
     Edges "passes of edge detection",
+    CellBorders "passes of the borders of cells",
     Lighten "passes of lightening",
     Tube "passes of the tube",
     Grain "passes of grain",
     OverlayPixels "overlay pixels",
+    Measured "pixels measured",
 }
 
 /// A set of counts; sums are exact, so they do not depend on threads.
@@ -87,6 +95,8 @@ counters! {
 pub struct Counters {
     #[cfg(feature = "counters")]
     counts: [u64; Counter::ALL.len()],
+    #[cfg(feature = "split")]
+    rays: u64,
     /// Where the time went, if a study wants to know.
     pub watch: Stopwatch,
 }
@@ -95,7 +105,12 @@ pub struct Counters {
 #[cfg(feature = "counters")]
 impl Default for Counters {
     fn default() -> Self {
-        Self { counts: [0; Counter::ALL.len()], watch: Stopwatch::default() }
+        Self {
+            counts: [0; Counter::ALL.len()],
+            #[cfg(feature = "split")]
+            rays: 0,
+            watch: Stopwatch::default(),
+        }
     }
 }
 
@@ -127,11 +142,34 @@ impl Counters {
         }
     }
 
+    /// Adds `n` rays of any kind, besides what is counted for their kind.
+    #[inline(always)]
+    pub fn add_rays(&mut self, n: usize) {
+        #[cfg(feature = "split")]
+        {
+            self.rays += n as u64;
+        }
+        let _ = n;
+    }
+
+    /// Rays of all kinds, with or without the feature `counters`; 0 without the feature `split`, which asks
+    /// for them.
+    pub fn rays(&self) -> u64 {
+        #[cfg(feature = "split")]
+        return self.rays;
+        #[cfg(not(feature = "split"))]
+        0
+    }
+
     /// Adds all counts of `other`.
     pub fn merge(&mut self, other: &Counters) {
         #[cfg(feature = "counters")]
         for (a, b) in self.counts.iter_mut().zip(other.counts) {
             *a += b;
+        }
+        #[cfg(feature = "split")]
+        {
+            self.rays += other.rays;
         }
         self.watch.merge(&other.watch);
     }

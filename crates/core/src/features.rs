@@ -44,6 +44,8 @@ pub const BRICK: bool = cfg!(feature = "brick");
 /// See [`crate::scene::Pattern::Scratches`].
 pub const SCRATCHES: bool = cfg!(feature = "scratches");
 
+/// Frames that are sampled in two ways.
+pub const SPLIT: bool = cfg!(feature = "split");
 /// The chain of effects, with at least one of them.
 pub const EFFECTS: bool = cfg!(feature = "effects");
 /// See [`crate::scene::Kind::Contrast`].
@@ -62,6 +64,8 @@ pub const EFFECT_LEVELS: bool = cfg!(feature = "effect-levels");
 pub const EFFECT_FRINGES: bool = cfg!(feature = "effect-fringes");
 /// See [`crate::scene::Kind::Edges`].
 pub const EFFECT_EDGES: bool = cfg!(feature = "effect-edges");
+/// See [`crate::scene::Kind::Cells`].
+pub const EFFECT_CELLS: bool = cfg!(feature = "effect-cells");
 /// See [`crate::scene::Kind::Lighten`].
 pub const EFFECT_LIGHTEN: bool = cfg!(feature = "effect-lighten");
 /// See [`crate::scene::Kind::Tube`].
@@ -70,7 +74,7 @@ pub const EFFECT_TUBE: bool = cfg!(feature = "effect-tube");
 pub const EFFECT_GRAIN: bool = cfg!(feature = "effect-grain");
 
 /// Each feature with the counter that shows it at work.
-pub const ALL: [(&str, Counter); 29] = [
+pub const ALL: [(&str, Counter); 31] = [
     ("ggx", Counter::Ggx),
     ("bumps", Counter::Bumps),
     ("fields", Counter::FieldSteps),
@@ -89,6 +93,7 @@ pub const ALL: [(&str, Counter); 29] = [
     ("stripes", Counter::Stripes),
     ("brick", Counter::Brick),
     ("scratches", Counter::Scratches),
+    ("split", Counter::Measured),
     ("effect-contrast", Counter::Contrast),
     ("effect-tint", Counter::Tint),
     ("effect-bloom", Counter::Bloom),
@@ -97,6 +102,7 @@ pub const ALL: [(&str, Counter); 29] = [
     ("effect-levels", Counter::Levels),
     ("effect-fringes", Counter::Fringes),
     ("effect-edges", Counter::Edges),
+    ("effect-cells", Counter::CellBorders),
     ("effect-lighten", Counter::Lighten),
     ("effect-tube", Counter::Tube),
     ("effect-grain", Counter::Grain),

@@ -8,7 +8,7 @@ use crate::counters::Counter;
 use crate::mesh::Instance;
 use crate::quality::{Quality, Rung};
 use crate::sample::ROUGH;
-use crate::scene::{Field, LightKind, Material, Pattern, Scene, Shading};
+use crate::scene::{Field, Figures, LightKind, Material, Pattern, Scene, Shading};
 use crate::shade::MAX_POINTS;
 
 /// The machinery that a frame calls for, as the counters that it moves.
@@ -42,6 +42,11 @@ impl Plan {
         let textured = grain || bumps || !scene.voxels.is_empty();
         let pattern = |p| materials().any(|m| m.texture.is_visible() && m.texture.pattern == p);
         let known = quality.rung == Rung::Surface || (quality.rung == Rung::Light && textured);
+        let titles = scene.split.map(|split| {
+            let (rays, height, error) = ([0; 2], 0.5625, 0.0);
+            (split.titles)(&Figures { split, rays, height, error })
+        });
+        let titles = || titles.iter();
         let calls = [
             (Counter::PrimaryRays, true),
             (Counter::SphereTests, !scene.spheres.is_empty()),
@@ -82,12 +87,13 @@ impl Plan {
             (Counter::SmokeCells, scene.smoke.is_some_and(|smoke| smoke.steps > 0)),
             (Counter::SmokeShown, scene.smoke.is_some()),
             (Counter::SmokeMarched, scene.smoke.is_some()),
-            (Counter::Beams, !scene.beams.is_empty()),
+            (Counter::Beams, !scene.beams.is_empty() || titles().any(|scene| !scene.beams.is_empty())),
             (Counter::KnownSurfaces, adaptive && known && scene.has_known_surfaces()),
-            (Counter::Traced, !adaptive || quality.smallest <= 1),
+            (Counter::Traced, !adaptive || quality.smallest <= 1 || scene.split.is_some()),
             (Counter::Interpolated, adaptive),
             (Counter::EdgeSamples, quality.edge_samples.max(quality.samples) > 0),
-            (Counter::BloomPasses, scene.grade.bloom > 0.0),
+            (Counter::BloomPasses, scene.grade.bloom > 0.0 || titles().any(|scene| scene.grade.bloom > 0.0)),
+            (Counter::Measured, adaptive && scene.split.is_some()),
             (Counter::OverlayPixels, scene.overlay > 0.0),
         ];
         let effects = scene.effects.iter().filter(|effect| effect.runs()).map(|effect| effect.kind.counter());

@@ -27,12 +27,14 @@ impl Subject {
         Subject { name: "fireflies", frames: 1, scene: |_| swarm::scene(256) }
     }
 
-    /// The scene at frame `n` as it is measured: without overlays that show the sampling, and
+    /// The scene at frame `n` as it is measured: without what shows the sampling, and
     /// without grain, which is the same in all pictures.
     pub fn bare(&self, n: u64) -> Scene {
         let mut scene = (self.scene)(n);
         scene.overlay = 0.0;
         scene.light_count = 0.0;
+        scene.split = None;
+        scene.effects.clear();
         scene.grade.grain = 0.0;
         scene
     }

@@ -16,6 +16,7 @@ pub mod codec;
 mod elf;
 pub mod encode;
 mod error;
+pub mod machinery;
 pub mod release;
 pub mod report;
 mod sections;

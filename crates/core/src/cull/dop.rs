@@ -132,6 +132,12 @@ impl Dop {
         Dop { lo, hi, near: c.z - r, unbounded: false, ..dop }
     }
 
+    /// Least and greatest coordinate of a ball's bound, to the right (axis 0) or down (1).
+    pub fn extent(&self, axis: usize) -> [f32; 2] {
+        let [lo, hi] = [self.lo, self.hi].map(|bound| bound.as_array()[4 * axis]);
+        if axis == 0 { [lo, hi] } else { [-hi, -lo] }
+    }
+
     /// Bounds the convex hull of `count` points (view coordinates) along the axes given.
     #[inline(never)]
     fn hull(mut dop: Dop, count: usize, point: &dyn Fn(usize) -> Vec3) -> Dop {

@@ -11,6 +11,7 @@ use crate::features;
 use crate::math::hash::hash2;
 use crate::math::lanes::{F, RAMP, V3, splat};
 use crate::parallel;
+use crate::sample::Tile;
 use crate::scene::{Effect, Kind};
 
 /// Rows that are done as one piece of work.
@@ -35,7 +36,7 @@ impl Chain {
 
     /// Applies effects, one after another, to frame `n`.
     #[inline(never)]
-    pub fn run(&mut self, effects: &[Effect], n: u64, counters: &mut Counters) {
+    pub fn run(&mut self, effects: &[Effect], tiles: &[Tile], n: u64, counters: &mut Counters) {
         if !features::EFFECTS {
             return;
         }
@@ -58,7 +59,7 @@ impl Chain {
                     bloom.of([width, height], (threshold, 1.0, octaves), read)
                 });
                 next.reset(width, height, 1);
-                let around = Around { picture, glow, seed: hash2(n as u32, 1) };
+                let around = Around { picture, tiles, glow, seed: hash2(n as u32, 1) };
                 let (across, up) = (2.0 / width as f32, 2.0 / height as f32);
                 write(next, &|x, y| {
                     let px = (splat(x as f32 + 0.5) + RAMP) * splat(across) - F::ONE;

@@ -7,12 +7,15 @@ use crate::features::*;
 use crate::math::Vec3;
 use crate::math::hash::{mix_x8, unit_x8};
 use crate::math::lanes::{F, LANE_INDEX, V3, splat, splat_u};
+use crate::sample::{self, TILE, Tile};
 use crate::scene::Kind;
 
 /// What an effect may ask for besides the pixels themselves.
 pub struct Around<'a> {
     /// The picture it is applied to.
     pub picture: &'a Picture,
+    /// How its pixels were got.
+    pub tiles: &'a [Tile],
     /// Its bloom, if the effect adds one.
     pub glow: Option<&'a Picture>,
     /// Of the frame's noise.
@@ -78,6 +81,16 @@ pub fn apply(kind: &Kind, around: &Around, (x, y): (usize, usize), (px, py): (F,
             let down = (g - a) + (i - c) + (h - b) * splat(2.0);
             let step = (across * across + down * down).sqrt() * splat(0.25 * strength);
             v + V3::splat(colour) * step.fast_min(F::ONE)
+        }
+        Kind::Cells { shade, colour } if EFFECT_CELLS => {
+            let tile = &around.tiles[y / TILE * picture.width.div_ceil(TILE) + x / TILE];
+            let border = F::new(std::array::from_fn(|lane| {
+                let record = tile.record[y % TILE * TILE + x % TILE + lane];
+                let [left, above] = [x + lane, y].map(|i| i & (record.size() - 1) == 0);
+                let known = [sample::Kind::Filled, sample::Kind::Interpolated].contains(&record.kind());
+                (known && record.size() >= 4 && (left || above)) as u32 as f32
+            }));
+            v + (v * splat(shade - 1.0) + V3::splat(colour)) * border
         }
         Kind::Lighten(share) if EFFECT_LIGHTEN => {
             let end = V3::splat(Vec3::splat(if share > 0.0 { 1.0 } else { 0.0 }));

@@ -15,7 +15,7 @@ use crate::math::hash::hash2;
 use crate::math::lanes::{F, RAMP, V3, load, splat, splat_u};
 use crate::render::Stage;
 use crate::sample::{Kind, TILE, Tile};
-use crate::scene::{Effect, Stop};
+use crate::scene::Stop;
 use crate::shade::Points;
 use crate::study::Phase;
 use crate::trace::ramp;
@@ -23,6 +23,9 @@ use crate::{features, parallel};
 
 /// Rows that are finished as one piece of work.
 const ROWS: usize = 16;
+
+/// Whether something may come between tiles and pixels.
+pub const KEEPS: bool = features::EFFECTS || features::SPLIT;
 
 /// What lives from frame to frame.
 #[derive(Default)]
@@ -32,30 +35,50 @@ pub struct Post {
 }
 
 impl Post {
-    /// Writes the tiles of frame `n` as 0RGB rows into `pixels`; returns what that took.
-    pub fn finish(&mut self, stage: &Stage, tiles: &[Tile], n: u64, pixels: &mut [u32]) -> Counters {
-        let (width, height) = (stage.width as usize, stage.height as usize);
+    /// Keeps the picture that the tiles of frame `n` show, with the scene's effects on it; returns what that
+    /// took.
+    #[inline(never)]
+    pub fn keep(&mut self, stage: &Stage, tiles: &[Tile], n: u64) -> Counters {
         let mut counters = Counters::start(&stage.quality.study, Phase::Bloom);
         let glow = self.bloom.glow(stage, tiles);
         counters.watch.enter(Phase::Finishing);
         counters.add(Counter::BloomPasses, glow.is_some() as usize);
+        let size = [stage.width as usize, stage.height as usize];
+        self.chain.fill(size, &|x, y| develop(stage, tiles, glow, (x, y)));
+        self.chain.run(&stage.scene.effects, tiles, n, &mut counters);
+        counters.watch.stop();
+        counters
+    }
+
+    /// Writes frame `n` as 0RGB rows into `pixels`: the picture that was kept, if one was, and what the tiles
+    /// of another stage show, if there are any. Returns what that took.
+    #[inline(never)]
+    pub fn finish(
+        &mut self,
+        stage: &Stage,
+        kept: bool,
+        lit: Option<(&Stage, &[Tile])>,
+        n: u64,
+        pixels: &mut [u32],
+    ) -> Counters {
+        let (width, height) = (stage.width as usize, stage.height as usize);
+        let mut counters = Counters::start(&stage.quality.study, Phase::Bloom);
+        let glow = lit.and_then(|(stage, tiles)| self.bloom.glow(stage, tiles));
+        counters.watch.enter(Phase::Finishing);
+        counters.add(Counter::BloomPasses, glow.is_some() as usize);
         let painted = (stage.scene.overlay * stage.width as f32) as usize;
         counters.add(Counter::OverlayPixels, painted * height);
-        // Without effects the picture goes straight from the tiles to the pixels.
-        let effects = &stage.scene.effects;
-        let mut changed = None;
-        if features::EFFECTS && effects.iter().any(Effect::runs) {
-            self.chain.fill([width, height], &|x, y| develop(stage, tiles, glow, (x, y)));
-            self.chain.run(effects, n, &mut counters);
-            changed = Some(&self.chain.picture);
-        }
+        let picture = &self.chain.picture;
         parallel::each(pixels.chunks_mut(width * ROWS), |strip, rows| {
             for (row, y) in rows.chunks_mut(width).zip(strip * ROWS..) {
                 for (out, x) in row.chunks_mut(8).zip((0..).step_by(8)) {
-                    let colour = match changed {
-                        Some(picture) if features::EFFECTS => picture.near(x, y, 0, 0),
-                        _ => develop(stage, tiles, glow, (x, y)),
-                    };
+                    let mut colour = V3::ZERO;
+                    if KEEPS && kept {
+                        colour = picture.near(x, y, 0, 0);
+                    }
+                    if let Some((stage, tiles)) = lit {
+                        colour += develop(stage, tiles, glow, (x, y));
+                    }
                     print(stage, colour, (x, y), n, out);
                 }
             }
@@ -83,9 +106,9 @@ fn develop(stage: &Stage, tiles: &[Tile], glow: Option<&Picture>, (x, y): (usize
         }
     }
     if features::POINTS && stage.scene.light_count > 0.0 {
-        let at = stage.on_screen(x as f32 + 4.0, y as f32 + 0.5);
-        let reach = tile.reach((x % TILE, y % TILE), stage.quality.light_tile as usize);
-        let count = |points: &Points| points.count(&stage.scene.points, at.x, -at.y, reach);
+        let side = stage.quality.light_tile as usize;
+        let reach = tile.reach((x % TILE, y % TILE), side);
+        let count = |points: &Points| points.count(&stage.scene.points, [x / side, y / side], reach);
         let count = stage.points.as_ref().map_or(0, count);
         let paint = ramp(&COUNTS, splat(count as i32 as f32));
         colour = colour + (paint - colour) * splat(stage.scene.light_count);

@@ -7,6 +7,5 @@ mod effect;
 mod finish;
 mod picture;
 
-pub use chain::Chain;
 pub use display::Display;
-pub use finish::Post;
+pub use finish::{KEEPS, Post};

@@ -5,10 +5,10 @@ use crate::counters::Counters;
 use crate::features;
 use crate::math::sampling::r2;
 use crate::parallel;
-use crate::post::Post;
+use crate::post::{KEEPS, Post};
 use crate::quality::Quality;
 use crate::sample::{Scratch, TILE, Tile, beams, refine, share_edges, smooth_edges};
-use crate::scene::Scene;
+use crate::scene::{Effect, Figures, Scene};
 use crate::sim::{Eight, Simulation, Volume};
 use crate::study::Phase;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -32,6 +32,53 @@ impl Pool {
     fn give(&self, scratch: Scratch) {
         self.list().push(scratch);
     }
+
+    /// Does `pass` on all tiles, and adds what it counted.
+    fn run(&self, stage: &Stage, pass: Pass, tiles: &mut [Tile], counters: &mut Counters) {
+        let across = (stage.width as usize).div_ceil(TILE);
+        parallel::each(tiles.iter_mut(), |i, tile| {
+            let mut scratch = self.take();
+            scratch.counters = Counters::start(&stage.quality.study, Phase::Sampling);
+            pass(stage, &mut scratch, (i % across * TILE, i / across * TILE), tile);
+            scratch.counters.watch.stop();
+            tile.counters = scratch.counters;
+            self.give(scratch);
+        });
+        for tile in tiles {
+            counters.merge(&tile.counters);
+        }
+    }
+}
+
+/// What the two sides of a split frame cost so far.
+#[derive(Default)]
+struct Ledger {
+    rays: [u64; 2],
+    measured: [f32; 2],
+}
+
+impl Ledger {
+    /// Takes from the tiles what they counted in a pass.
+    fn enter(&mut self, tiles: &mut [Tile]) {
+        for tile in tiles {
+            for side in 0..2 {
+                self.rays[side] += std::mem::take(&mut tile.rays[side]);
+                self.measured[side] += std::mem::take(&mut tile.measured[side]);
+            }
+        }
+    }
+
+    /// Mean squared error of a channel's display value.
+    fn error(&self) -> f32 {
+        self.measured[1] / (3.0 * self.measured[0]).max(1.0)
+    }
+}
+
+/// Beams on black, before everything.
+fn bare_beams(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize), tile: &mut Tile) {
+    tile.rgb = [[0.0; TILE * TILE]; 3];
+    tile.nearness = [0.0; TILE * TILE];
+    beams(stage, scratch, corner, tile);
 }
 
 /// Buffers that live from frame to frame.
@@ -72,30 +119,42 @@ impl Renderer {
         // Edges are shared out after the first pass, which finds them.
         let passes: [(Pass, bool); 3] = [(refine, true), (smooth_edges, false), (beams, false)];
         let mut sums = Vec::new();
+        let mut ledger = Ledger::default();
         for pattern in 0..quality.average {
             // The first pattern lies in the middle of the pixels.
             (stage.pattern, stage.shift) = (pattern, r2(pattern) - 0.5);
             for (pass, finds_edges) in passes {
-                parallel::each(self.tiles.iter_mut(), |i, tile| {
-                    let mut scratch = pool.take();
-                    scratch.counters = Counters::start(&stage.quality.study, Phase::Sampling);
-                    pass(&stage, &mut scratch, (i % across * TILE, i / across * TILE), tile);
-                    scratch.counters.watch.stop();
-                    tile.counters = scratch.counters;
-                    pool.give(scratch);
-                });
+                pool.run(&stage, pass, &mut self.tiles, &mut self.counters);
                 if finds_edges {
                     share_edges(&mut self.tiles, across);
                 }
-                for tile in &self.tiles {
-                    self.counters.merge(&tile.counters);
+                if features::SPLIT {
+                    ledger.enter(&mut self.tiles);
                 }
             }
             if quality.average > 1 {
                 average(&mut self.tiles, &mut sums, pattern + 1);
             }
         }
-        self.counters.merge(&self.post.finish(&stage, &self.tiles, n, pixels));
+        let kept = KEEPS && (scene.effects.iter().any(Effect::runs) || scene.split.is_some());
+        if kept {
+            self.counters.merge(&self.post.keep(&stage, &self.tiles, n));
+        }
+        // What is written over the picture are beams, in the same tiles.
+        let titles = scene.split.filter(|_| features::SPLIT).map(|split| {
+            let height = height as f32 / width as f32;
+            (split.titles)(&Figures { split, height, rays: ledger.rays, error: ledger.error() })
+        });
+        let titles = titles.filter(|titles| !titles.beams.is_empty());
+        let titles = titles.as_ref().map(|titles| Stage::new(titles, quality, width, height));
+        if let Some(titles) = &titles {
+            pool.run(titles, bare_beams, &mut self.tiles, &mut self.counters);
+        }
+        let lit = match &titles {
+            None if kept => None,
+            titles => Some((titles.as_ref().unwrap_or(&stage), &self.tiles[..])),
+        };
+        self.counters.merge(&self.post.finish(&stage, kept, lit, n, pixels));
     }
 }
 

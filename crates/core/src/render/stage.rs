@@ -10,6 +10,7 @@ use crate::scene::Scene;
 use crate::shade::{Lamp, MAX_LAMPS, Points, lamps};
 use crate::sim::Volume;
 use crate::trace::Shape;
+use core::ops::Range;
 use glam::Vec2;
 
 /// A scene, a quality and a size, with all that follows from them.
@@ -108,6 +109,24 @@ impl<'a> Stage<'a> {
     pub fn wants_depths(&self) -> bool {
         (features::BEAMS && !self.scene.beams.is_empty())
             || (features::POINTS && self.scene.light_count > 0.0)
+    }
+
+    /// Sides of the scene's line that are sampled: 0 is the left one, where every pixel is traced; a scene
+    /// without line has only the right one.
+    pub fn sides(&self) -> Range<usize> {
+        !(features::SPLIT && self.scene.split.is_some()) as usize..2
+    }
+
+    /// On which side of the line a pixel lies.
+    pub fn side(&self, x: usize, y: usize) -> usize {
+        match &self.scene.split {
+            Some(split) if features::SPLIT => {
+                let right = (2 * x + 1) as f32 / self.width as f32 - 1.0;
+                let up = 1.0 - (2 * y + 1) as f32 / self.height as f32;
+                (right >= split.x + split.slant * up) as usize
+            }
+            _ => 1,
+        }
     }
 
     /// Unit vector along the view axis.

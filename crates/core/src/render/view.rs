@@ -55,6 +55,7 @@ impl View {
         let (sampling, lights) = (self == View::Sampling, self == View::Lights);
         if sampling || lights {
             let mut scene = scene.clone();
+            scene.effects.clear();
             // A share of the width, and a weight.
             *if sampling { &mut scene.overlay } else { &mut scene.light_count } = 1.0;
             return Renderer::default().frame(&scene, n, size, quality, pixels);

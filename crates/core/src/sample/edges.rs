@@ -37,36 +37,40 @@ pub fn smooth_edges(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize)
     }
     let width = TILE.min(stage.width as usize - corner.0);
     let height = TILE.min(stage.height as usize - corner.1);
-    let mut pixels: Vec<(usize, usize, u32)> = Vec::new();
-    for y in 0..height {
-        for x in 0..width {
-            let count = if tile.edges[y][x] { edge } else { all };
-            if count > 0 {
-                pixels.push((x, y, count));
+    for side in stage.sides() {
+        let before = scratch.counters.rays();
+        let mut pixels: Vec<(usize, usize, u32)> = Vec::new();
+        for y in 0..height {
+            for x in 0..width {
+                let count = if tile.edges[y][x] { edge } else { all };
+                if count > 0 && stage.side(corner.0 + x, corner.1 + y) == side {
+                    pixels.push((x, y, count));
+                }
             }
         }
-    }
-    let candidates = stage.candidates(corner, TILE);
-    let mut positions = Vec::new();
-    for batch in pixels.chunks((BATCH / edge as usize).max(1)) {
-        positions.clear();
-        for &(x, y, count) in batch {
-            for i in 0..count {
-                positions.push(place(corner.0 + x, corner.1 + y, i + 1));
+        let candidates = stage.candidates(corner, TILE);
+        let mut positions = Vec::new();
+        for batch in pixels.chunks((BATCH / edge as usize).max(1)) {
+            positions.clear();
+            for &(x, y, count) in batch {
+                for i in 0..count {
+                    positions.push(place(corner.0 + x, corner.1 + y, i + 1));
+                }
+            }
+            scratch.samples.0.clear();
+            trace(stage, scratch, &positions, candidates);
+            scratch.counters.add(Counter::EdgeSamples, positions.len());
+            let mut next = 0;
+            for &(x, y, count) in batch {
+                let mut sum = compress(tile.get(x, y));
+                for _ in 0..count {
+                    sum += compress(scratch.samples.get(next).colour());
+                    next += 1;
+                }
+                let colour = expand(sum / (count + 1) as f32);
+                tile.set(x, y, colour, Record::new(Kind::Smoothed, 1));
             }
         }
-        scratch.samples.0.clear();
-        trace(stage, scratch, &positions, candidates);
-        scratch.counters.add(Counter::EdgeSamples, positions.len());
-        let mut next = 0;
-        for &(x, y, count) in batch {
-            let mut sum = compress(tile.get(x, y));
-            for _ in 0..count {
-                sum += compress(scratch.samples.get(next).colour());
-                next += 1;
-            }
-            let colour = expand(sum / (count + 1) as f32);
-            tile.set(x, y, colour, Record::new(Kind::Smoothed, 1));
-        }
+        tile.rays[side] = scratch.counters.rays() - before;
     }
 }

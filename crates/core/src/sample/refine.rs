@@ -47,6 +47,14 @@ impl Cell {
         let (size, i) = if i < 4 { (self.size, i) } else { (self.size / 2, 3) };
         (self.x + (i & 1) * size, self.y + (i >> 1) * size)
     }
+
+    /// Whether it has pixels on this side of the scene's line.
+    fn lies(self, stage: &Stage, corner: (usize, usize), side: usize) -> bool {
+        let last = self.size - 1;
+        let (x, y) = (corner.0 + self.x, corner.1 + self.y);
+        stage.sides().contains(&side)
+            && (0..4).any(|i| stage.side(x + (i & 1) * last, y + (i >> 1) * last) == side)
+    }
 }
 
 /// What a tile knows of the shapes that may show, or cast shadows, in it.
@@ -61,8 +69,31 @@ struct Surroundings {
 pub fn refine(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize), tile: &mut Tile) {
     let width = TILE.min(stage.width as usize - corner.0);
     let height = TILE.min(stage.height as usize - corner.1);
-    let cell = stage.quality.cell(stage.height) as usize;
     let mut around = Surroundings { shapes: stage.candidates(corner, TILE), shadows: [u64::MAX; MAX_LAMPS] };
+    tile.edges = [[false; GRID]; GRID];
+    for pass in stage.sides().start..2 + (features::SPLIT && stage.scene.split.is_some()) as usize {
+        refine_side(stage, scratch, corner, (width, height), pass, &mut around, tile);
+    }
+}
+
+/// Samples what of the tile lies on one side of the scene's line: 0, each pixel on the left, 1, the right
+/// side, 2, each pixel on the right that has no ray of its own, to measure what is there.
+fn refine_side(
+    stage: &Stage,
+    scratch: &mut Scratch,
+    corner: (usize, usize),
+    (width, height): (usize, usize),
+    pass: usize,
+    around: &mut Surroundings,
+    tile: &mut Tile,
+) {
+    let before = scratch.counters.rays();
+    let (side, measures) = (pass.min(1), pass == 2);
+    let cell = match stage.quality.cell(stage.height) as usize {
+        _ if pass != 1 => 1,
+        cell if cell > 1 && stage.sides().len() == 2 => (cell * 4).min(32),
+        cell => cell,
+    };
     scratch.samples.0.clear();
     scratch.grid.clear();
     scratch.grid.resize(GRID * GRID, u32::MAX);
@@ -71,10 +102,15 @@ pub fn refine(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize), tile
     let along = |end: usize| (0..TILE).map(|i| i * cell).take_while(move |x| *x < end);
     for y in along(height) {
         for x in along(width) {
-            cells.push(Cell { x, y, size: cell });
+            let cell = Cell { x, y, size: cell };
+            if cell.lies(stage, corner, side) {
+                tile.measured[0] += measures as u32 as f32;
+                if !measures || tile.record[y * TILE + x].kind() != Kind::Traced {
+                    cells.push(cell);
+                }
+            }
         }
     }
-    tile.edges = [[false; GRID]; GRID];
     let mut done = 0;
     // Level by level: the cells of the next one are appended.
     while done < cells.len() {
@@ -91,7 +127,11 @@ pub fn refine(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize), tile
                 scratch.samples.get(scratch.grid[y * GRID + x] as usize)
             };
             let known = Known { size: cell.size, samples: std::array::from_fn(at) };
-            if cell.size == 1 {
+            if measures {
+                let off = stage.display.map(tile.get(cell.x, cell.y)) - known.samples[0].display();
+                tile.measured[1] += off.dot(off);
+                scratch.counters.add(Counter::Measured, 1);
+            } else if cell.size == 1 {
                 tile.set(cell.x, cell.y, known.samples[0].colour(), Record::new(Kind::Traced, 1));
                 tile.nearness[cell.y * TILE + cell.x] = 1.0 / known.samples[0].depth();
                 scratch.counters.add(Counter::Traced, 1);
@@ -100,20 +140,25 @@ pub fn refine(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize), tile
                         tile.edges[y][x] = true;
                     }
                 }
-            } else if cell.size <= stage.quality.smallest as usize
-                || (known.smooth(stage)
-                    && !around.may_hide_something(stage, corner, cell, &known, &mut scratch.counters))
+            } else if !cell.lies(stage, corner, 1 - side)
+                && (cell.size <= stage.quality.smallest as usize
+                    || (known.smooth(stage)
+                        && !around.may_hide_something(stage, corner, cell, &known, &mut scratch.counters)))
             {
                 fill(stage, corner, cell, &known, tile, &mut scratch.counters);
             } else {
                 let half = Cell { size: cell.size / 2, ..cell };
                 for (x, y) in (0..4).map(|i| half.point(i)) {
-                    if x < width && y < height {
-                        cells.push(Cell { x, y, ..half });
+                    let half = Cell { x, y, ..half };
+                    if x < width && y < height && half.lies(stage, corner, side) {
+                        cells.push(half);
                     }
                 }
             }
         }
+    }
+    if !measures {
+        tile.rays[side] = scratch.counters.rays() - before;
     }
 }
 

@@ -57,6 +57,10 @@ pub struct Tile {
     pub edges: [[bool; GRID]; GRID],
     /// What sampling it took.
     pub counters: Counters,
+    /// Rays left and right of the scene's line, if it has one, in the last pass.
+    pub rays: [u64; 2],
+    /// Pixels that were measured, and the sum of their squared errors.
+    pub measured: [f32; 2],
 }
 
 impl Default for Tile {
@@ -67,6 +71,8 @@ impl Default for Tile {
             nearness: [0.0; TILE * TILE],
             edges: [[false; GRID]; GRID],
             counters: Counters::default(),
+            rays: [0; 2],
+            measured: [0.0; 2],
         }
     }
 }

@@ -108,6 +108,7 @@ pub fn trace(stage: &Stage, scratch: &mut Scratch, positions: &[Position], candi
         if scratch.rays.count == 0 {
             break;
         }
+        scratch.counters.add_rays(scratch.rays.count);
         step(stage, scratch, candidates, level);
         std::mem::swap(&mut scratch.rays, &mut scratch.next);
         scratch.next.clear();

@@ -47,6 +47,14 @@ pub enum Kind {
         /// Colour of the lines.
         colour: Vec3,
     },
+    /// Left and upper borders of the cells that were filled or interpolated, from 4 px on: v times `shade`
+    /// plus `colour`.
+    Cells {
+        /// Factor on what is there.
+        shade: f32,
+        /// What is added.
+        colour: Vec3,
+    },
     /// This share of the way to white; to black if it is under 0.
     Lighten(f32),
     /// v times `base + glow (1 - (r / radius)²)`, but at least `base`, as on a tube; r is 1 in the corners.
@@ -74,6 +82,7 @@ impl Kind {
             Kind::Levels(_) => Counter::Levels,
             Kind::Fringes(_) => Counter::Fringes,
             Kind::Edges { .. } => Counter::Edges,
+            Kind::Cells { .. } => Counter::CellBorders,
             Kind::Lighten(_) => Counter::Lighten,
             Kind::Tube { .. } => Counter::Tube,
             Kind::Grain(_) => Counter::Grain,

@@ -14,6 +14,7 @@ mod light;
 mod material;
 mod shapes;
 mod smoke;
+mod split;
 mod texture;
 mod track;
 mod voxels;
@@ -27,6 +28,7 @@ pub use light::{Emitter, Light, LightKind, PointLight};
 pub use material::{Channel, Fire, Material};
 pub use shapes::{Cone, Cylinder, Plane, Sphere, Triangle};
 pub use smoke::{Air, Motion, Rules, Smoke};
+pub use split::{Figures, Split};
 pub use texture::{Pattern, Texture};
 pub use track::{Ease, Key, track};
 pub use voxels::{Edit, Voxels};
@@ -158,6 +160,8 @@ pub struct Scene {
     pub grade: Grade,
     /// Effects on the graded picture, in their order; vignette and grain come after them.
     pub effects: Vec<Effect>,
+    /// A line on either side of which the frame is sampled in another way.
+    pub split: Option<Split>,
     /// Show how the frame was sampled, on this share of the picture's width from the left.
     pub overlay: f32,
     /// Show how many small lights reach the surfaces of each tile, over the picture with this

@@ -173,7 +173,9 @@ pub fn direct(
                     if !open.any() {
                         break;
                     }
-                    counters.add(Counter::ShadowRays, open.to_bitmask().count_ones() as usize);
+                    let count = open.to_bitmask().count_ones() as usize;
+                    counters.add(Counter::ShadowRays, count);
+                    counters.add_rays(count);
                     counters.add(Counter::SoftShadowRays, usize::from(samples > 1));
                     let to_point = V3::splat(lamp.position + lamp.aside(sample)) - start;
                     let rays = Rays8 { origin: start, direction: to_point };

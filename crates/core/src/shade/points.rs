@@ -4,10 +4,9 @@
 //! A light falls off as `I / d² · (1 - (d/r)⁴)²` (Karis 2013, Real Shading in Unreal Engine 4) and is
 //! exactly 0 from its radius r on. What is culled would have added exactly 0, so culling never changes
 //! a bit. A tile is the part common to a column and a row of the screen, so a mask of lights for each
-//! of these is enough: a ball meets a column if it lies not wholly behind one of the column's two
-//! planes through the eye.
+//! of these is enough: a ball meets the columns and rows that its bounds on the screen meet.
 
-use crate::cull::{Bounds, View};
+use crate::cull::{Bounds, Dop, View};
 use crate::math::Vec3;
 use crate::math::lanes::{F, V3, splat};
 use crate::scene::PointLight;
@@ -36,7 +35,7 @@ pub struct Points {
     bands: [Vec<Mask>; 2],
 }
 
-/// How far a tile's planes lie outside of it, as a share of its side: much more than rounding.
+/// How far a tile reaches beyond its sides, as a share of them: much more than rounding.
 const SLACK: f32 = 1e-3;
 
 impl Points {
@@ -55,18 +54,14 @@ impl Points {
             let eight: &mut Eight = &mut eights[i / 8];
             eight.position.set_lane(i % 8, light.position);
             eight.radius.as_mut_array()[i % 8] = light.radius;
-            let v = view.local(light.position);
+            let bound = Dop::ball(view.local(light.position), light.radius * 1.001);
             for (axis, bands) in bands.iter_mut().enumerate() {
-                let at = [v.x, -v.y][axis];
-                let mut edge = corner[axis] - SLACK * side;
-                for mask in bands {
-                    // Over the plane through the eye and an edge, to the right or down.
-                    let over = |edge: f32| (at - v.z * edge) / (1.0 + edge * edge).sqrt();
-                    let inside = over(edge).min(-over(edge + side * (1.0 + 2.0 * SLACK))).min(v.z);
-                    if inside > light.radius * -1.001 {
-                        mask[i / 64] |= 1 << (i % 64);
-                    }
-                    edge += side;
+                let [lo, hi] = bound.extent(axis);
+                // One more than the band; 0 for what lies before the first.
+                let band = |at: f32| ((at - corner[axis]) / side + 1.0) as usize;
+                let (first, last) = (band(lo - SLACK * side), band(hi + SLACK * side));
+                for mask in bands.iter_mut().take(last).skip(first.saturating_sub(1)) {
+                    mask[i / 64] |= 1 << (i % 64);
                 }
             }
         }
@@ -85,11 +80,12 @@ impl Points {
         Some(std::array::from_fn(|i| column[i] & row[i]))
     }
 
-    /// How many lights reach the surfaces of a tile, [`Self::tile`], between the depths whose inverses are
-    /// given, the greater one first.
-    pub fn count(&self, lights: &[PointLight], x: f32, y: f32, [near, far]: [f32; 2]) -> u32 {
+    /// How many lights reach the surfaces of the tile in a column and a row, between the depths whose
+    /// inverses are given, the greater one first.
+    pub fn count(&self, lights: &[PointLight], tile: [usize; 2], [near, far]: [f32; 2]) -> u32 {
         let mut count = 0;
-        for (lights, mut bits) in lights.chunks(64).zip(self.tile(x, y).unwrap_or_default()) {
+        for (k, lights) in lights.chunks(64).take(MAX_POINTS / 64).enumerate() {
+            let mut bits = self.bands[0][tile[0]][k] & self.bands[1][tile[1]][k];
             while bits != 0 {
                 let light = &lights[bits.trailing_zeros() as usize];
                 let z = self.view.local(light.position).z;

@@ -2,7 +2,9 @@
 
 use lexopt::prelude::*;
 use luc_pack::report::{self, LIMIT, Report, history};
-use luc_pack::{Error, Method, Options, check, pack_elf_as, percent, release, size_build, write_executable};
+use luc_pack::{
+    Error, Method, Options, check, machinery, pack_elf_as, percent, release, size_build, write_executable,
+};
 use std::process::ExitCode;
 
 const HELP: &str = "\
@@ -22,7 +24,8 @@ target/pack/luc-safe, the same program unpacked, and prints what became of each 
                      raw: no compression
   -h, --help         this text
 
-Exit code 1: over 65,536 bytes, or it calls the platform's libm, which differs between machines,
+Exit code 1: over 65,536 bytes, or it has machinery of the engine that none of its parts calls for, or
+lacks some that one does, or it calls the platform's libm, which differs between machines,
 or the packed file does something else than the unpacked one.
 Exit code 2: it can't be built.
 ";
@@ -90,8 +93,11 @@ fn pack(arguments: &Arguments) -> Result<Option<String>, Error> {
     let here = std::env::current_dir().map_err(Error::file("."))?;
     let root = size_build::project_root(&here)?;
     let output = root.join("target/pack");
-    let linked = size_build::build(&root, &output)?;
-    let linked = std::fs::read(&linked).map_err(Error::file(&linked))?;
+    let built = size_build::build(&root, &output)?;
+    let of_luc = machinery::compiled(&built.messages, "luc");
+    let (compiled, called) =
+        (machinery::compiled(&built.messages, "luc-core"), machinery::called(machinery::parts(&of_luc)));
+    let linked = std::fs::read(&built.linked).map_err(Error::file(&built.linked))?;
     let options = Options { method: arguments.method, name: "luc", needs_avx2: true, progress: percent };
     let packed = pack_elf_as(&linked, &options)?;
     let (file, safe) = (output.join("luc"), output.join("luc-safe"));
@@ -109,6 +115,10 @@ fn pack(arguments: &Arguments) -> Result<Option<String>, Error> {
         history::record(&root, &report)?;
     }
     print!("{report}");
+    println!("machinery       {}", compiled.join(", "));
+    if let Some(complaint) = machinery::difference(&compiled, &called) {
+        return Ok(Some(complaint));
+    }
     if report.total > LIMIT {
         return Ok(Some(format!("{} bytes over the limit of {LIMIT}", report.total - LIMIT)));
     }

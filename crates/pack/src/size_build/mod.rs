@@ -15,6 +15,7 @@ pub mod workspace;
 
 use crate::Error;
 use std::path::{Path, PathBuf};
+use std::process::Stdio;
 use toolchain::Toolchain;
 
 /// Compiler flags, with the reason for each group.
@@ -32,10 +33,6 @@ const RUSTFLAGS: &[&str] = &[
     "-Cforce-unwind-tables=no",
     // At a fixed address: no relocations. What the linker needs besides is in build.rs.
     "-Crelocation-model=static",
-    // The C library's maths before the standard library's copy of it, which is larger.
-    "-Zpre-link-arg=-Wl,--no-as-needed",
-    "-Zpre-link-arg=-lm",
-    "-Zpre-link-arg=-Wl,--as-needed",
     // The basic register allocator never splits a live range: fewer moves and more equal code for the packer,
     // 2,400 bytes, for no more instructions executed.
     "-Cllvm-args=-regalloc=basic",
@@ -73,8 +70,16 @@ pub fn project_root(here: &Path) -> Result<PathBuf, Error> {
     root.map(Path::to_owned).ok_or(Error::Command("not inside the project".to_owned()))
 }
 
-/// Builds the intro; returns the path of the linked executable.
-pub fn build(root: &Path, output: &Path) -> Result<PathBuf, Error> {
+/// What was built.
+pub struct Built {
+    /// The linked executable.
+    pub linked: PathBuf,
+    /// What cargo told of the crates that it compiled, as JSON, an object a line.
+    pub messages: String,
+}
+
+/// Builds the intro.
+pub fn build(root: &Path, output: &Path) -> Result<Built, Error> {
     let toolchain = Toolchain::find(root)?;
     let workspace = workspace::prepare(root, output, &toolchain)?;
     let target_directory = output.join("build");
@@ -82,6 +87,8 @@ pub fn build(root: &Path, output: &Path) -> Result<PathBuf, Error> {
     command
         .current_dir(&workspace)
         .args(["build", "--quiet", "--locked", "--package=luc", "--bin=luc", "--profile=intro"])
+        .arg("--message-format=json-render-diagnostics")
+        .stderr(Stdio::inherit())
         .args(["--no-default-features", "--features=sound,smoke", "--target", workspace::TARGET])
         .args(["-Zbuild-std=std,panic_abort", "-Zbuild-std-features=optimize_for_size"])
         .arg("--target-dir")
@@ -95,9 +102,10 @@ pub fn build(root: &Path, output: &Path) -> Result<PathBuf, Error> {
     {
         command.env(std_source::VARIABLE, source);
     }
-    let status = command.status().map_err(Error::file(&toolchain.cargo))?;
-    if !status.success() {
+    let told = command.output().map_err(Error::file(&toolchain.cargo))?;
+    if !told.status.success() {
         return Err(Error::Command("the size build failed; cargo's messages are above".to_owned()));
     }
-    Ok(target_directory.join(workspace::TARGET).join("intro/luc"))
+    let linked = target_directory.join(workspace::TARGET).join("intro/luc");
+    Ok(Built { linked, messages: String::from_utf8_lossy(&told.stdout).into_owned() })
 }

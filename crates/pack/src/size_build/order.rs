@@ -62,7 +62,11 @@ pub fn link(arguments: &[OsString]) -> Result<i32, Error> {
     let text = block(".text", &code) + &block(".rodata", &constants);
     std::fs::write(&script, text).map_err(Error::file(&script))?;
     let mut command = Command::new("cc");
-    command.args(arguments).arg("-T").arg(&script);
+    // Unwinding is called by nothing that is kept, but would still make the program ask for its library. Build
+    // scripts, which are linked by this program too, have it.
+    let is_script = output.is_some_and(|path| path.to_string_lossy().contains("build_script"));
+    let kept = arguments.iter().filter(|argument| is_script || *argument != "-lgcc_s");
+    command.args(kept).arg("-T").arg(&script);
     let status = command.status().map_err(Error::file("cc"))?;
     Ok(status.code().unwrap_or(1))
 }

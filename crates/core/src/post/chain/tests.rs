@@ -36,7 +36,7 @@ fn noisy(x: usize, y: usize) -> Vec3 {
 }
 
 fn run(chain: &mut Chain, effects: &[Effect]) {
-    chain.run(effects, 5, &mut Counters::default());
+    chain.run(effects, &[], 5, &mut Counters::default());
 }
 
 fn pixel(chain: &Chain, x: usize, y: usize) -> Vec3 {

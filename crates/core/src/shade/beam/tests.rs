@@ -89,3 +89,23 @@ fn finite_for_every_ray_and_nothing_beyond_its_reach() {
         assert_eq!(beam(&b, &far, F::ZERO, INFINITY), V3::ZERO, "{b:?}");
     }
 }
+
+#[test]
+fn a_small_glow_does_not_twinkle_as_it_moves() {
+    let mut random = Random::new(702);
+    // A glow of less than the width of a pixel at its distance.
+    let (distance, pixel) = (40.0, 0.02);
+    let spread = splat(pixel / distance);
+    for _ in 0..200 {
+        let at = Vec3::new(random.range(0.0, pixel), random.range(0.0, pixel), distance);
+        let glow = Beam { from: at, to: at, width: 0.8 * pixel, colour: Vec3::ONE, fade: 0.0 };
+        let sum: f32 = (-6..=6)
+            .flat_map(|y| (-6..=6).map(move |x| Vec3::new(x as f32 * pixel, y as f32 * pixel, distance)))
+            .map(|to| beam(&glow, &packet(|| (Vec3::ZERO, to.normalize())), spread, INFINITY).x.as_array()[0])
+            .sum();
+        // The integral of exp(-q) - exp(-9) up to q = 9 over the pixels, times width / w.
+        let w2 = 0.8 * 0.8 + 0.25_f32;
+        let want = 0.8 * w2.sqrt() * std::f32::consts::PI * (1.0 - 10.0 * REST);
+        assert!((sum / want - 1.0).abs() < 0.02, "{at}: {sum} not {want}");
+    }
+}
