@@ -2,7 +2,8 @@
 //!
 //! The state is a pure function of the [`Rules`] and the number of steps: always the same steps from
 //! still air on, each a fixed order of plain operations. [`Simulation`] only remembers the latest, so that
-//! the next frame costs a step; earlier ones are found from the start.
+//! the next frame costs a step. Tools, which go back and forth, also have every 120th; the intro, which
+//! doesn't, begins anew.
 
 mod grid;
 mod light;
@@ -24,19 +25,54 @@ pub struct Simulation {
     of: Option<&'static Rules>,
     step: u32,
     state: State,
+    /// The states after each [`APART`] steps.
+    #[cfg(any(test, feature = "study"))]
+    kept: Vec<State>,
 }
+
+/// Steps between two states that are kept.
+#[cfg(any(test, feature = "study"))]
+const APART: u32 = 120;
 
 impl Simulation {
     /// Brings the state to that of `smoke`.
     #[inline(never)]
     pub fn run(&mut self, smoke: &Smoke, counters: &mut Counters) {
-        if self.step > smoke.steps || !self.of.is_some_and(|of| std::ptr::eq(of, smoke.rules)) {
-            *self = Simulation { of: Some(smoke.rules), step: 0, state: State::new(smoke.rules) };
+        let is_other = !self.of.is_some_and(|of| std::ptr::eq(of, smoke.rules));
+        #[cfg(any(test, feature = "study"))]
+        if !is_other && self.seek(smoke.steps) {
+            return self.go_on(smoke, counters);
         }
+        if is_other {
+            *self = Simulation { of: Some(smoke.rules), ..Default::default() };
+        }
+        if is_other || self.step > smoke.steps {
+            (self.step, self.state) = (0, State::new(smoke.rules));
+        }
+        self.go_on(smoke, counters);
+    }
+
+    /// Takes the steps that are missing.
+    fn go_on(&mut self, smoke: &Smoke, counters: &mut Counters) {
         while self.step < smoke.steps {
             self.step += 1;
             self.state.step(smoke.rules, self.step, counters);
+            #[cfg(any(test, feature = "study"))]
+            if self.step == APART * (self.kept.len() as u32 + 1) {
+                self.kept.push(self.state.clone());
+            }
         }
+    }
+
+    /// Goes to the last state kept before `step`, if that is nearer; whether there is one.
+    #[cfg(any(test, feature = "study"))]
+    fn seek(&mut self, step: u32) -> bool {
+        let Some(last) = (step / APART).min(self.kept.len() as u32).checked_sub(1) else { return false };
+        let at = (last + 1) * APART;
+        if !(at..=step).contains(&self.step) {
+            (self.state, self.step) = (self.kept[last as usize].clone(), at);
+        }
+        true
     }
 
     /// The air after the last step.

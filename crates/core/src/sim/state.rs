@@ -42,7 +42,7 @@ const SHARE: f32 = 0.99 / 6.0;
 const REACH: f32 = 2.0;
 
 /// All that moves.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub struct State {
     /// The values of each cell.
     pub cells: Vec<Eight>,
