@@ -125,12 +125,12 @@ fn the_view_of_the_lights_is_blue_for_one_and_white_for_many() {
 }
 
 #[test]
-fn the_view_of_the_sampling_is_the_frame_under_the_overlay() {
+fn the_view_of_the_sampling_is_the_frame_without_effects_under_the_overlay() {
     for part in show::PARTS {
         let scene = (part.scene)(100);
         let mut expected = vec![0; (SIZE.0 * SIZE.1) as usize];
-        let covered = Scene { overlay: 1.0, ..scene.clone() };
+        let covered = Scene { overlay: 1.0, effects: Vec::new(), ..scene.clone() };
         Renderer::default().frame(&covered, 0, SIZE, &quality(), &mut expected);
-        assert_eq!(draw(View::Sampling, &scene, &quality()), expected, "{}", part.name);
+        assert!(draw(View::Sampling, &scene, &quality()) == expected, "{}", part.name);
     }
 }

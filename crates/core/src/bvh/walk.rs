@@ -15,7 +15,7 @@
 
 use super::{EMPTY, LEAF_BIT, Node, Tree, range};
 use crate::counters::{Counter, Counters};
-use crate::math::lanes::{F, greatest, least, max, min, splat};
+use crate::math::lanes::{Bound, F, greatest, least, splat};
 use crate::trace::Rays8;
 
 /// What is still to be visited, of a tree and of those in its leaves, with the distance from which
@@ -74,8 +74,8 @@ impl Node {
         for (i, axis) in axes.iter().enumerate() {
             let near = self.bounds[2 * i + axis.near] - axis.origin[0];
             let far = self.bounds[2 * i + 1 - axis.near] - axis.origin[1];
-            enter = max(min(near * axis.inverse[0], near * axis.inverse[1]), enter);
-            exit = min(max(far * axis.inverse[0], far * axis.inverse[1]), exit);
+            enter = (near * axis.inverse[0]).at_most(near * axis.inverse[1]).at_least(enter);
+            exit = (far * axis.inverse[0]).at_least(far * axis.inverse[1]).at_most(exit);
         }
         (enter, enter.simd_le(exit).to_bitmask())
     }

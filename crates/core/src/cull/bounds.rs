@@ -1,7 +1,7 @@
 //! The box around points that come eight at a time.
 
 use crate::math::Vec3;
-use crate::math::lanes::{F, V3};
+use crate::math::lanes::{Bound, F, V3};
 
 /// Least and greatest coordinates, lane by lane.
 #[derive(Clone, Copy)]
@@ -19,8 +19,8 @@ impl Bounds {
 
     /// Takes in the points in lanes `mask`.
     pub fn add(&mut self, points: V3, mask: F) {
-        let low = |old: F, p: F| old.fast_min(mask.select(p, old));
-        let high = |old: F, p: F| old.fast_max(mask.select(p, old));
+        let low = |old: F, p: F| old.at_most(mask.select(p, old));
+        let high = |old: F, p: F| old.at_least(mask.select(p, old));
         let V3 { x, y, z } = points;
         self.lo = V3::new(low(self.lo.x, x), low(self.lo.y, y), low(self.lo.z, z));
         self.hi = V3::new(high(self.hi.x, x), high(self.hi.y, y), high(self.hi.z, z));

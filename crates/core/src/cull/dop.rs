@@ -7,7 +7,7 @@
 //! k = (u z ± r sqrt(u² + z² - r²)) / (z² - r²).
 
 use crate::features;
-use crate::math::lanes::{F, splat};
+use crate::math::lanes::{Bound, F, splat};
 use crate::math::{Mat3, Vec3};
 use crate::scene::{Beam, Scene};
 use crate::trace::Shape;
@@ -79,7 +79,7 @@ fn ball_extents(x: F, y: F, c: Vec3, r: f32) -> (F, F) {
     let r = r + 2e-6 * (r + c.abs().max_element());
     let u = x * splat(c.x) + y * splat(c.y);
     let (z, r2) = (splat(c.z), splat(r * r));
-    let root = splat(r) * (u * u + z * z - r2).fast_max(F::ZERO).sqrt();
+    let root = splat(r) * (u * u + z * z - r2).at_least(F::ZERO).sqrt();
     let scale = F::ONE / (z * z - r2);
     ((u * z - root) * scale, (u * z + root) * scale)
 }
@@ -156,8 +156,8 @@ impl Dop {
         let inv = splat(1.0 / p.z);
         let (x, y) = (self.axis_x * splat(p.x) * inv, self.axis_y * splat(p.y) * inv);
         let (e, slack) = (x + y, (x.abs() + y.abs()) * splat(1e-6) + splat(1e-6));
-        self.lo = self.lo.fast_min(e - slack);
-        self.hi = self.hi.fast_max(e + slack);
+        self.lo = self.lo.at_most(e - slack);
+        self.hi = self.hi.at_least(e + slack);
     }
 
     /// Bound of a box with these half sides along `axes` (columns, world).

@@ -1,7 +1,7 @@
 //! Microfacets: how many there are and how much of them is seen.
 
 use super::first;
-use crate::math::lanes::{F, V3, splat};
+use crate::math::lanes::{Bound, F, V3, splat};
 use crate::math::lanes_f64::{in_f64, splat_d};
 use crate::shade;
 use glam::Vec3;
@@ -57,6 +57,6 @@ pub fn beckmann_of_cosine(cos: f32, m: f32) -> f32 {
 
 fn of_beckmann(sine2: F, cos: F, m: f32) -> f32 {
     // The engine's floor, under which e to the -1e8 is 0.
-    let d = shade::beckmann(sine2, cos.fast_max(splat(1e-4)), splat(m).fast_max(splat(1e-3)));
+    let d = shade::beckmann(sine2, cos.at_least(splat(1e-4)), splat(m).at_least(splat(1e-3)));
     first(d * splat(FRAC_1_PI))
 }

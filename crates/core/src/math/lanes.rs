@@ -96,17 +96,33 @@ pub fn from_bits(bits: u8) -> F {
     F::from_bits((U::splat(bits.into()) & bit).simd_eq(bit))
 }
 
-/// The smaller of each pair; `b` where either is NaN.
-#[inline(always)]
-pub fn min(a: F, b: F) -> F {
-    // The x86 instruction does just this; others treat NaN differently.
-    if cfg!(target_arch = "x86_64") { a.fast_min(b) } else { select(a.simd_lt(b), a, b) }
+/// Minima and maxima that are the same on all processors.
+pub trait Bound {
+    /// The smaller of each pair; `most` where either is NaN.
+    fn at_most(self, most: Self) -> Self;
+    /// The larger of each pair; `least` where either is NaN.
+    fn at_least(self, least: Self) -> Self;
 }
 
-/// The larger of each pair; `b` where either is NaN.
-#[inline(always)]
-pub fn max(a: F, b: F) -> F {
-    if cfg!(target_arch = "x86_64") { a.fast_max(b) } else { select(a.simd_gt(b), a, b) }
+impl Bound for F {
+    #[inline(always)]
+    fn at_most(self, most: F) -> F {
+        // The x86 instruction does just this; others treat NaN differently.
+        if cfg!(target_arch = "x86_64") {
+            self.fast_min(most)
+        } else {
+            select(self.simd_lt(most), self, most)
+        }
+    }
+
+    #[inline(always)]
+    fn at_least(self, least: F) -> F {
+        if cfg!(target_arch = "x86_64") {
+            self.fast_max(least)
+        } else {
+            select(self.simd_gt(least), self, least)
+        }
+    }
 }
 
 /// Lane `index[i]` of `v`, modulo 8, in each lane i.
@@ -284,7 +300,7 @@ impl V3 {
     /// The greatest size of a coordinate; a NaN among them may show or not.
     #[inline(never)]
     pub fn max_abs(self) -> F {
-        self.x.abs().fast_max(self.y.abs()).fast_max(self.z.abs())
+        self.x.abs().at_least(self.y.abs()).at_least(self.z.abs())
     }
 
     /// |v|², without overflow for |v| < 1.8e19.

@@ -4,7 +4,7 @@
 //! value wherever the formula cancels less than 2²⁸-fold. [`F`] in and out, so that a lane still
 //! depends on itself alone.
 
-use super::lanes::F;
+use super::lanes::{Bound, F};
 
 /// Four f64.
 pub type D = wide::f64x4;
@@ -16,6 +16,22 @@ pub fn splat_d(v: f64) -> D {
     return D::from(safe_arch::set_splat_m256d(v).0);
     #[cfg(not(all(target_arch = "x86_64", target_feature = "avx")))]
     return D::splat(v);
+}
+
+impl Bound for D {
+    #[inline(always)]
+    fn at_most(self, most: D) -> D {
+        if cfg!(target_arch = "x86_64") { self.fast_min(most) } else { self.simd_lt(most).select(self, most) }
+    }
+
+    #[inline(always)]
+    fn at_least(self, least: D) -> D {
+        if cfg!(target_arch = "x86_64") {
+            self.fast_max(least)
+        } else {
+            self.simd_gt(least).select(self, least)
+        }
+    }
 }
 
 /// What `f` makes of the lanes in f64, four at a time, rounded once to f32.

@@ -5,7 +5,7 @@
 //! of the scalar functions; the polynomials are minimax fits to f32 accuracy. No result is NaN except
 //! where stated, so that one bad sample cannot spread through a filter.
 
-use super::lanes::{F, INFINITY, ONE, U, max, min, select, splat, splat_u};
+use super::lanes::{Bound, F, INFINITY, ONE, U, select, splat, splat_u};
 
 /// Adding this to |t| < 2²¹ rounds t to the nearest integer and leaves it in the low bits.
 const ROUND: F = F::splat(12_582_912.0); // 1.5·2²³
@@ -39,7 +39,7 @@ fn exp2_kernel(shifted: F, r: F) -> F {
 /// 2^x. Error ≤ 1.2 ulp, exact for integers; inf from 128, 0 below −126 and for NaN.
 #[inline(never)]
 pub fn exp2(x: F) -> F {
-    let t = min(max(x, splat(MIN_EXPONENT)), splat(128.0));
+    let t = x.at_least(splat(MIN_EXPONENT)).at_most(splat(128.0));
     let shifted = t + ROUND;
     // At 128 the kernel's exponent field is that of inf.
     x.simd_ge(splat(MIN_EXPONENT)) & exp2_kernel(shifted, t - (shifted - ROUND))
@@ -54,7 +54,7 @@ pub fn exp(x: F) -> F {
     const LOG2_E: F = F::splat(core::f32::consts::LOG2_E);
     const LOWEST: F = F::splat(-87.33654);
     const HIGHEST: F = F::splat(88.72283);
-    let t = min(max(x, LOWEST), HIGHEST);
+    let t = x.at_least(LOWEST).at_most(HIGHEST);
     let shifted = t * LOG2_E + ROUND;
     let n = shifted - ROUND;
     let r = (t - n * LN2_HIGH) - n * LN2_LOW;
@@ -117,7 +117,7 @@ pub fn pow(x: F, y: F) -> F {
     let whole = high * k;
     let rest = y * rest + (y - high) * k;
     let t = whole + rest;
-    let shifted = min(max(t, splat(MIN_EXPONENT)), splat(128.0)) + ROUND;
+    let shifted = t.at_least(splat(MIN_EXPONENT)).at_most(splat(128.0)) + ROUND;
     let value = exp2_kernel(shifted, (whole - (shifted - ROUND)) + rest);
     t.simd_ge(splat(MIN_EXPONENT)) & select(t.simd_ge(splat(128.0)), INFINITY, value)
 }
@@ -134,7 +134,7 @@ pub fn sin_cos(x: F) -> (F, F) {
     let n = shifted - ROUND;
     let r = ((x - n * HIGH) - n * MIDDLE) - n * LOW;
     // The clamp only acts where |x| is so large that the remainder is lost anyway, and lets NaN through.
-    let r = min(ONE, max(splat(-1.0), r));
+    let r = ONE.at_most(splat(-1.0).at_least(r));
     let z = r * r;
     let sin = poly(z, [-0.16666664661714697, 0.008332748154085032, -0.00019587865702101875]);
     let cos =
@@ -159,7 +159,7 @@ pub fn wrap(x: F) -> F {
 pub fn sin_turns(x: F) -> F {
     let r = wrap(x);
     let y = r & splat(f32::from_bits(0x7fff_ffff));
-    let y = min(y, splat(0.5) - y);
+    let y = y.at_most(splat(0.5) - y);
     let z = y * y;
     // Written out: compiled for size, `poly` is a loop, and this is the sound's innermost.
     let high = splat(81.395_355) + z * splat(-71.474_678);

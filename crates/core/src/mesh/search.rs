@@ -8,7 +8,7 @@
 use super::{Assembly, gather};
 use crate::bvh::Stack;
 use crate::counters::{Counter, Counters};
-use crate::math::lanes::{F, LANES, V3, greatest, least, splat};
+use crate::math::lanes::{Bound, F, LANES, V3, greatest, least, splat};
 use crate::scene::Scene;
 use crate::trace::{Aim, Hits, Rays8};
 
@@ -25,7 +25,7 @@ const FAR: f32 = 1e18;
 #[inline(never)]
 fn spread(v: V3) -> F {
     let range = |x: F| greatest(x) - least(x);
-    range(v.x).fast_max(range(v.y)).fast_max(range(v.z))
+    range(v.x).at_least(range(v.y)).at_least(range(v.z))
 }
 
 /// Takes over the crossings that come before the best so far. What is looked for is the nearest,

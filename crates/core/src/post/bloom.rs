@@ -8,7 +8,7 @@
 //! 0.22 and 0.15 (after Jimenez 2014, with fixed weights).
 
 use super::picture::{PAD, Picture, REACH};
-use crate::math::lanes::{F, V3, from_bits, load, splat};
+use crate::math::lanes::{Bound, F, V3, from_bits, load, splat};
 use crate::parallel;
 use crate::render::Stage;
 use crate::sample::{TILE, Tile};
@@ -44,19 +44,19 @@ fn bright(
         for y in first..h.min(first + ROWS * side) {
             for x in (0..w.div_ceil(8)).map(|i| 8 * i) {
                 let V3 { x: r, y: g, z: b } = read(x, y);
-                let colour = [r, g, b].map(|v| v.fast_max(F::ZERO).fast_min(splat(LIMIT)));
-                let most = colour[0].fast_max(colour[1]).fast_max(colour[2]);
+                let colour = [r, g, b].map(|v| v.at_least(F::ZERO).at_most(splat(LIMIT)));
+                let most = colour[0].at_least(colour[1]).at_least(colour[2]);
                 let over = most - splat(threshold);
                 let knee = splat(KNEE);
                 if !over.simd_gt(-knee).any() {
                     continue;
                 }
                 any.store(true, Ordering::Relaxed);
-                let soft = (over + knee).fast_max(F::ZERO).fast_min(knee + knee);
-                let share = over.fast_max(soft * soft * splat(0.5 / (2.0 * KNEE)));
+                let soft = (over + knee).at_least(F::ZERO).at_most(knee + knee);
+                let share = over.at_least(soft * soft * splat(0.5 / (2.0 * KNEE)));
                 // What is held beyond the picture's right side doesn't count.
                 let inside = from_bits((0xff_u32 >> (8 - (w - x).min(8))) as u8);
-                let share = (share / most.fast_max(splat(1e-6)) * splat(mean)) & inside;
+                let share = (share / most.at_least(splat(1e-6)) * splat(mean)) & inside;
                 for (k, c) in colour.into_iter().enumerate() {
                     let sums = &mut rows[((y - first) >> step) * line + k * stride + PAD + (x >> step)..];
                     for (sum, part) in sums.iter_mut().zip((c * share).as_array().chunks_exact(side)) {

@@ -9,7 +9,7 @@ use super::picture::{PAD, Picture, REACH};
 use crate::counters::Counters;
 use crate::features;
 use crate::math::hash::hash2;
-use crate::math::lanes::{F, RAMP, V3, splat};
+use crate::math::lanes::{Bound, F, RAMP, V3, splat};
 use crate::parallel;
 use crate::sample::Tile;
 use crate::scene::{Effect, Kind};
@@ -66,7 +66,7 @@ impl Chain {
                     let py = 1.0 - (y as f32 + 0.5) * up;
                     let place = &effect.place;
                     let far = px * splat(place.normal.x) + splat(py * place.normal.y - place.from);
-                    let share = (far * splat(1.0 / place.over)).fast_max(F::ZERO).fast_min(F::ONE);
+                    let share = (far * splat(1.0 / place.over)).at_least(F::ZERO).at_most(F::ONE);
                     let from = picture.near(x, y, 0, 0);
                     let to = effect::apply(&effect.kind, &around, (x, y), (px, py), from);
                     from + (to - from) * (share * splat(effect.amount))

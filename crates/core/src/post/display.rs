@@ -6,7 +6,7 @@
 //! within 0.001 of it, a quarter of an output step, and the three tables fit the first-level cache.
 
 use crate::math::Vec3;
-use crate::math::lanes::{F, V3, max, splat, splat_u};
+use crate::math::lanes::{Bound, F, V3, splat, splat_u};
 use crate::math::scalar::{pow, srgb_encode};
 use crate::scene::Grade;
 
@@ -54,7 +54,7 @@ impl Display {
 #[inline(never)]
 fn lookup(curve: &[f32], x: F) -> F {
     // The maximum is its second operand if the first is NaN.
-    let x = max(x, splat(f32::from_bits(FIRST))).fast_min(splat(15.999));
+    let x = x.at_least(splat(f32::from_bits(FIRST))).at_most(splat(15.999));
     // Half an entry on, so that cutting the lower bits off takes the nearest.
     const HALF: u32 = 1 << (22 - FINE);
     let at = (x.to_bits() - splat_u(FIRST - HALF)) >> (23 - FINE);

@@ -6,7 +6,7 @@ use super::picture::Picture;
 use crate::features::*;
 use crate::math::Vec3;
 use crate::math::hash::{mix_x8, unit_x8};
-use crate::math::lanes::{F, LANE_INDEX, V3, splat, splat_u};
+use crate::math::lanes::{Bound, F, LANE_INDEX, V3, splat, splat_u};
 use crate::sample::{self, TILE, Tile};
 use crate::scene::Kind;
 
@@ -57,7 +57,7 @@ pub fn apply(kind: &Kind, around: &Around, (x, y): (usize, usize), (px, py): (F,
         }
         Kind::Levels(levels) if EFFECT_LEVELS => {
             let last = V3::splat(levels - 1.0);
-            let level = |v: F, n: f32, last: F| (v * splat(n)).floor().fast_min(last) / last;
+            let level = |v: F, n: f32, last: F| (v * splat(n)).floor().at_most(last) / last;
             V3 {
                 x: level(v.x, levels.x, last.x),
                 y: level(v.y, levels.y, last.y),
@@ -80,7 +80,7 @@ pub fn apply(kind: &Kind, around: &Around, (x, y): (usize, usize), (px, py): (F,
             let across = (c - a) + (i - g) + (f - d) * splat(2.0);
             let down = (g - a) + (i - c) + (h - b) * splat(2.0);
             let step = (across * across + down * down).sqrt() * splat(0.25 * strength);
-            v + V3::splat(colour) * step.fast_min(F::ONE)
+            v + V3::splat(colour) * step.at_most(F::ONE)
         }
         Kind::Cells { shade, colour } if EFFECT_CELLS => {
             let tile = &around.tiles[y / TILE * picture.width.div_ceil(TILE) + x / TILE];
@@ -98,7 +98,7 @@ pub fn apply(kind: &Kind, around: &Around, (x, y): (usize, usize), (px, py): (F,
         }
         Kind::Tube { base, glow, radius } if EFFECT_TUBE => {
             let r2 = (px * px + splat(py * py)) * splat(0.5 / (radius * radius));
-            v * (splat(base) + splat(glow) * (F::ONE - r2).fast_max(F::ZERO))
+            v * (splat(base) + splat(glow) * (F::ONE - r2).at_least(F::ZERO))
         }
         Kind::Grain(half) if EFFECT_GRAIN => {
             let noise = noise(y * picture.width + x, around.seed) * splat(2.0 * half);

@@ -12,7 +12,7 @@ use super::picture::Picture;
 use crate::counters::{Counter, Counters};
 use crate::math::Vec3;
 use crate::math::hash::hash2;
-use crate::math::lanes::{F, RAMP, V3, load, splat, splat_u};
+use crate::math::lanes::{Bound, F, RAMP, V3, load, splat, splat_u};
 use crate::render::Stage;
 use crate::sample::{Kind, TILE, Tile};
 use crate::scene::Stop;
@@ -129,7 +129,7 @@ fn print(stage: &Stage, mut colour: V3, (x, y): (usize, usize), n: u64, out: &mu
     }
     let noise = noise(y * stage.width as usize + x, hash2(n as u32, 0)) * splat(2.0 * grade.grain);
     let byte = |c: F| {
-        let c = (c + noise).fast_max(F::ZERO).fast_min(F::ONE);
+        let c = (c + noise).at_least(F::ZERO).at_most(F::ONE);
         // A whole number added to 2^23 stands in the low bits.
         ((c * splat(255.0) + splat(0.5)).floor() + splat(8_388_608.0)).to_bits() & splat_u(255)
     };

@@ -1,6 +1,6 @@
 //! Pictures as planes of numbers, with their edges repeated, so that filters need not ask where they are.
 
-use crate::math::lanes::{F, RAMP, V3, max, pick, splat, splat_u};
+use crate::math::lanes::{Bound, F, RAMP, V3, pick, splat, splat_u};
 use crate::parallel;
 
 /// The seven taps of the blur: row six of Pascal's triangle.
@@ -75,7 +75,7 @@ impl Picture {
     pub fn near(&self, x: usize, y: usize, right: isize, down: isize) -> V3 {
         let at = self.at(x, y).wrapping_add_signed(down * self.line() as isize + right);
         let colour =
-            |k: usize| max(load(&self.light, at + k * self.stride()), F::ZERO).fast_min(splat(LIMIT));
+            |k: usize| load(&self.light, at + k * self.stride()).at_least(F::ZERO).at_most(splat(LIMIT));
         V3::new(colour(0), colour(1), colour(2))
     }
 
@@ -146,7 +146,7 @@ impl Picture {
     #[inline(never)]
     pub fn light(&self, x: usize, y: usize, scale: usize) -> V3 {
         // The position among the glow's pixels: exact, as the scale is a power of two.
-        let place = |p: F| ((p + splat(0.5)) * splat(1.0 / scale as f32) - splat(0.5)).fast_max(F::ZERO);
+        let place = |p: F| ((p + splat(0.5)) * splat(1.0 / scale as f32) - splat(0.5)).at_least(F::ZERO);
         let (u, v) = (place(splat(x as f32) + RAMP), place(splat(y as f32)));
         let (columns, row) = (u.floor(), v.floor());
         let (fx, fy) = (u - columns, v - row);

@@ -23,7 +23,7 @@ pub enum View {
     Distance,
     /// Colour of surfaces in white light from the front, with textures: diffuse and mirrored.
     Albedo,
-    /// The finished frame with how each pixel was got: see [`Scene::overlay`].
+    /// The finished frame, without effects, with how each pixel was got: see [`Scene::overlay`].
     Sampling,
     /// How many small lights reach the surfaces of each tile: black for none, blue for one, by violet
     /// and orange to white for 64 and more. See [`Scene::light_count`].

@@ -12,7 +12,7 @@ use crate::cull::{Bounds, Region, occluders};
 use crate::features;
 use crate::math::Vec3;
 use crate::math::hash::mix_x8;
-use crate::math::lanes::{F, U, V3, splat};
+use crate::math::lanes::{Bound, F, U, V3, splat};
 use crate::render::Stage;
 use crate::scene::{Channel, Shading};
 use crate::shade::{self, MAX_LAMPS, Visibility};
@@ -42,7 +42,7 @@ impl Boxes {
     /// Adds the points of a packet's hits; shapes from number `facets` on are facets of meshes.
     fn add(&mut self, points: V3, ids: F, facets: f32) {
         // The part of the shape makes no difference; facets share one box.
-        let shapes = (ids * splat(0.25)).floor().fast_min(splat(facets));
+        let shapes = (ids * splat(0.25)).floor().at_most(splat(facets));
         let mut todo = ids.simd_ge(F::ZERO).to_bitmask();
         while todo != 0 {
             let shape = shapes.as_array()[todo.trailing_zeros() as usize];
@@ -257,7 +257,7 @@ fn shade_packet(
     if level > 0 {
         // What a rough mirror sees far off dissolves into the mean light around it.
         let width = spread * hit.t - splat(BLUR_FROM);
-        let blur = (width * splat(BLUR_GAIN)).fast_max(F::ZERO).fast_min(F::ONE) & (solid & !drawn);
+        let blur = (width * splat(BLUR_GAIN)).at_least(F::ZERO).at_most(F::ONE) & (solid & !drawn);
         light += weight * shade::ambient(stage, rays.direction) * blur;
         weight = weight * (F::ONE - blur);
     }
@@ -280,7 +280,7 @@ fn shade_packet(
     if features::BOUNCES {
         // Highlights in what a bounce sees would be sparks.
         let roughness = &mut s.material[Channel::Roughness as usize];
-        *roughness = roughness.fast_max(scattered & F::ONE);
+        *roughness = roughness.at_least(scattered & F::ONE);
     }
     s.count(counters);
     let view = -rays.direction;
@@ -355,7 +355,7 @@ impl Found {
     #[inline(never)]
     fn spawn(&self, stage: &Stage, owners: &[u32], next: &mut RayList, counters: &mut Counters) {
         let cutoff = splat(stage.quality.cutoff / stage.scene.grade.exposure);
-        let worth = |w: V3| w.x.fast_max(w.y).fast_max(w.z).simd_gt(cutoff).to_bitmask();
+        let worth = |w: V3| w.x.at_least(w.y).at_least(w.z).simd_gt(cutoff).to_bitmask();
         for (lane, &sample) in owners.iter().enumerate() {
             for way in self.drawn.iter().filter(|way| way.which >> lane & 1 == 1) {
                 counters.add(way.counter, 1);

@@ -1,6 +1,6 @@
 //! The sky behind everything, discs in it, and the shining rectangles that mirrors see.
 
-use crate::math::lanes::{F, V3, min, splat};
+use crate::math::lanes::{Bound, F, V3, splat};
 use crate::math::lanes_fn::exp;
 use crate::scene::{Background, Emitter};
 use crate::trace::{NONE, Rays8, ramp};
@@ -11,10 +11,10 @@ use crate::trace::{NONE, Rays8, ramp};
 /// `w` may be 0, the hard edge, at any distance. 0 where x is NaN.
 #[inline(always)]
 fn covered(x: F, half: F, w: F) -> F {
-    let inv = F::ONE / w.fast_max(splat(1e-30));
+    let inv = F::ONE / w.at_least(splat(1e-30));
     let edge = splat(0.5) + (half - x.abs()) * inv;
     // The second operand counts where one is NaN.
-    min((half + half) * inv, edge).fast_max(F::ZERO).fast_min(F::ONE)
+    ((half + half) * inv).at_most(edge).at_least(F::ZERO).at_most(F::ONE)
 }
 
 /// Colour of the background in the direction of rays that hit nothing, and what was hit:
@@ -42,7 +42,7 @@ pub fn background(sky: &Background, rays: &Rays8, spread: F, soft: F, blind: F) 
         let share = t.simd_gt(F::ZERO).select(share, F::ZERO) & !blind;
         let height = y / (r + r) + splat(0.5);
         let low = V3::splat(disc.low);
-        let shine = low + (V3::splat(disc.high) - low) * height.fast_max(F::ZERO).fast_min(F::ONE);
+        let shine = low + (V3::splat(disc.high) - low) * height.at_least(F::ZERO).at_most(F::ONE);
         colour += (shine - colour) * share;
         id = share.simd_gt(splat(0.5)).select(splat(NONE - 1.0 - k as f32), id);
     }

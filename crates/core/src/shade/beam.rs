@@ -6,7 +6,7 @@
 //! ends before or soon after that place, part of the integral is missing: instead of the error
 //! function of x = (end - nearest) sin a / w, its likeness of third degree.
 
-use crate::math::lanes::{F, V3, splat};
+use crate::math::lanes::{Bound, F, V3, splat};
 use crate::math::lanes_fn::exp;
 use crate::scene::Beam;
 use crate::trace::Rays8;
@@ -27,9 +27,9 @@ pub fn beam(beam: &Beam, rays: &Rays8, spread: F, t: F) -> V3 {
     let across = d.cross(a);
     let sin2 = across.dot(across);
     let least = splat(1e-4);
-    let s = (fa - fd * da) / sin2.fast_max(least);
-    let s = s.fast_max(F::ZERO).fast_min(splat(length));
-    let nearest = (s * da - fd).fast_max(F::ZERO);
+    let s = (fa - fd * da) / sin2.at_least(least);
+    let s = s.at_least(F::ZERO).at_most(splat(length));
+    let nearest = (s * da - fd).at_least(F::ZERO);
     let between = f + d * nearest - a * s;
     let blur = spread * nearest * splat(0.5);
     let own = splat(beam.width);
@@ -38,12 +38,12 @@ pub fn beam(beam: &Beam, rays: &Rays8, spread: F, t: F) -> V3 {
     if !q.simd_lt(splat(Beam::END * Beam::END)).any() {
         return V3::ZERO;
     }
-    let sin = if length > 0.0 { sin2.fast_max(least).sqrt() } else { F::ONE };
+    let sin = if length > 0.0 { sin2.at_least(least).sqrt() } else { F::ONE };
     let w = w2.sqrt();
-    let before = ((t - nearest) * sin / w * splat(0.35) + splat(0.5)).fast_max(F::ZERO).fast_min(F::ONE);
+    let before = ((t - nearest) * sin / w * splat(0.35) + splat(0.5)).at_least(F::ZERO).at_most(F::ONE);
     let share = before * before * (splat(3.0) - (before + before));
     let left = exp(-(s * splat(beam.fade)));
-    let light = (exp(-q) - splat(REST)).fast_max(F::ZERO) * share * left * own / (w * sin);
+    let light = (exp(-q) - splat(REST)).at_least(F::ZERO) * share * left * own / (w * sin);
     V3::splat(beam.colour) * light
 }
 

@@ -5,7 +5,7 @@
 //! (n_t - n_i)(n_t + n_i) + (n_i cos)², of products that f64 holds exactly, and s as (n_i - n_t)(n_i + n_t) / (n_i cos + g)², which keeps its digits between bodies that are nearly
 //! alike. Where g² < 0 all is mirrored. Own rearrangement.
 
-use crate::math::lanes::{F, max, min};
+use crate::math::lanes::{Bound, F};
 use crate::math::lanes_f64::{D, in_f64, splat_d};
 
 /// g² as above.
@@ -21,7 +21,7 @@ fn beyond(cos: D, n_i: D, n_t: D) -> D {
 
 #[inline(always)]
 fn clamped(cos: F) -> F {
-    min(max(cos, F::ZERO), F::ONE)
+    cos.at_least(F::ZERO).at_most(F::ONE)
 }
 
 /// Share of unpolarised light that is mirrored where it falls in by an angle of this cosine (0..=1,
@@ -33,13 +33,13 @@ pub fn reflectance(cos: F, n_i: F, n_t: F) -> F {
     in_f64([clamped(cos), n_i, n_t], |[cos, n_i, n_t]| {
         let g2 = beyond(cos, n_i, n_t);
         let (zero, one) = (splat_d(0.0), splat_d(1.0));
-        let g = g2.fast_max(zero).sqrt();
+        let g = g2.at_least(zero).sqrt();
         // Only along the border of equal bodies is nothing left to divide by.
         let least = splat_d(1e-200);
         let sum = n_i * cos + g;
-        let s = (n_i - n_t) * (n_i + n_t) / (sum * sum).fast_max(least);
+        let s = (n_i - n_t) * (n_i + n_t) / (sum * sum).at_least(least);
         let (a, b) = (n_t * n_t * cos, n_i * g);
-        let p = (a - b) / (a + b).fast_max(least);
+        let p = (a - b) / (a + b).at_least(least);
         let share = (s * s + p * p) * splat_d(0.5);
         g2.simd_lt(zero).select(one, share)
     })
@@ -50,7 +50,7 @@ pub fn reflectance(cos: F, n_i: F, n_t: F) -> F {
 #[inline(always)]
 pub fn cos_refracted(cos: F, n_i: F, n_t: F) -> F {
     in_f64([clamped(cos), n_i, n_t], |[cos, n_i, n_t]| {
-        beyond(cos, n_i, n_t).fast_max(splat_d(0.0)).sqrt() / n_t
+        beyond(cos, n_i, n_t).at_least(splat_d(0.0)).sqrt() / n_t
     })
 }
 

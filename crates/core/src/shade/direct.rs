@@ -9,7 +9,7 @@ use super::lamps::Lamp;
 use crate::counters::{Counter, Counters};
 use crate::features;
 use crate::math::Vec3;
-use crate::math::lanes::{F, V3, splat};
+use crate::math::lanes::{Bound, F, V3, splat};
 use crate::math::lanes_fn::{exp, pow};
 use crate::render::Stage;
 use crate::scene::{Channel, Scene, Shading};
@@ -92,7 +92,7 @@ pub fn local(
 #[inline(never)]
 fn phong(s: &Surface, l: V3, v: V3, n_l: F) -> V3 {
     let rv = (n_l + n_l) * s.normal.dot(v) - l.dot(v);
-    s.colour(Channel::Specular) * pow(rv.fast_max(F::ZERO), s.value(Channel::Exponent))
+    s.colour(Channel::Specular) * pow(rv.at_least(F::ZERO), s.value(Channel::Exponent))
 }
 
 /// pi D of microfacets whose normals have this cosine, over 0, and squared sine, to the surface's, for an rms
@@ -115,13 +115,13 @@ fn cook_torrance(s: &Surface, l: V3, v: V3, n_l: F) -> V3 {
     let sum = l + v;
     let length = sum.length();
     let h = sum * (F::ONE / length);
-    let n_v = n.dot(v).fast_max(splat(1e-4));
-    let n_h = n.dot(h).fast_max(splat(1e-4));
-    let v_h = (length * splat(0.5)).fast_max(splat(1e-4));
-    let m = s.value(Channel::Roughness).fast_max(splat(1e-3));
+    let n_v = n.dot(v).at_least(splat(1e-4));
+    let n_h = n.dot(h).at_least(splat(1e-4));
+    let v_h = (length * splat(0.5)).at_least(splat(1e-4));
+    let m = s.value(Channel::Roughness).at_least(splat(1e-3));
     let d = beckmann(n.cross(h).dot(n.cross(h)), n_h, m);
     let two_c = n_h + n_h;
-    let g = (F::ONE / n_v).fast_min(two_c / v_h).fast_min(two_c * n_l / (v_h * n_v));
+    let g = (F::ONE / n_v).at_most(two_c / v_h).at_most(two_c * n_l / (v_h * n_v));
     schlick(s.colour(Channel::F0), splat(1.0), v_h) * s.colour(Channel::Specular) * (d * g * splat(0.25))
 }
 
@@ -188,8 +188,8 @@ pub fn direct(
                         candidates,
                         counters,
                     );
-                    hidden += found.fast_min(zero) & open;
-                    *code = code.fast_max(found & open);
+                    hidden += found.at_most(zero) & open;
+                    *code = code.at_least(found & open);
                 }
                 // Of lanes that agreed none or all of the rays are hidden.
                 let settled = hidden.simd_lt(zero) & !open;
@@ -204,7 +204,7 @@ pub fn direct(
             continue;
         }
         counters.add(Counter::LightEvaluations, 8);
-        let open = F::ONE + code.fast_min(zero);
+        let open = F::ONE + code.at_most(zero);
         let mut light = tinted(stage, lamp, code) * (lit & (reach * open / aim.d2));
         if let Some(volume) = stage.volume.filter(|_| features::SMOKE) {
             light = light * volume.shadow(k, start, aim.way);
@@ -218,7 +218,7 @@ pub fn direct(
             counters.add(Counter::PointLights, 8);
             let aim = Aim::at(light.position, s, start);
             let x = aim.d2 * splat(1.0 / (light.radius * light.radius));
-            let window = (F::ONE - x * x).fast_max(zero);
+            let window = (F::ONE - x * x).at_least(zero);
             let light = V3::splat(light.colour) * (active & aim.faces & (window * window / aim.d2));
             sum.add(stage, s, v, &aim, (light, zero), counters);
         });
@@ -243,7 +243,7 @@ impl Aim {
     #[inline(never)]
     fn at(position: Vec3, s: &Surface, start: V3) -> Aim {
         let way = V3::splat(position) - start;
-        let d2 = way.dot(way).fast_max(splat(1e-8));
+        let d2 = way.dot(way).at_least(splat(1e-8));
         let l = way * (F::ONE / d2.sqrt());
         let n_l = s.normal.dot(l);
         let faces = n_l.simd_gt(F::ZERO) & s.facing.dot(l).simd_gt(F::ZERO);

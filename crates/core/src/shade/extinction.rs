@@ -3,7 +3,7 @@
 //! Depths of steps are added with the rounding of each sum kept (Knuth, TAOCP 2, 4.2.2), so a thousand
 //! steps are as exact as one, and thin media don't vanish; 1 - exp(-τ) never cancels.
 
-use crate::math::lanes::{F, max, min, splat};
+use crate::math::lanes::{Bound, F, splat};
 use crate::math::lanes_fn::{exp, exp_m1};
 
 /// Optical depth along rays: extinction per unit of length, times length, summed.
@@ -37,7 +37,7 @@ impl Depth {
         let depth = self.depth();
         // What is left after one more rounding is at most half an ulp of τ, so its exponential is linear.
         let rest = self.rest - (depth - self.sum);
-        exp(-depth) * (F::ONE - min(max(rest, splat(-0.5)), splat(0.5)))
+        exp(-depth) * (F::ONE - rest.at_least(splat(-0.5)).at_most(splat(0.5)))
     }
 
     /// Share that is lost on the way, 1 - exp(-τ). Error at most 3 ulp.

@@ -5,14 +5,14 @@
 //! own with reflectance 1. Schlick 1994; inside the denser body with the outer angle.
 
 use crate::features;
-use crate::math::lanes::{F, V3, splat};
+use crate::math::lanes::{Bound, F, V3, splat};
 use crate::scene::{Channel, Shading};
 use crate::trace::Surface;
 
 /// Schlick's approximation f0 + (f90 - f0)(1 - c)^5, c clamped to 0..1; `f90` is 1 for a smooth surface.
 #[inline(always)]
 pub fn schlick(f0: V3, f90: F, cos: F) -> V3 {
-    let m = F::ONE - cos.fast_max(F::ZERO).fast_min(F::ONE);
+    let m = F::ONE - cos.at_least(F::ZERO).at_most(F::ONE);
     let m2 = m * m;
     let w = m2 * m2 * m;
     f0 + (V3::new(f90, f90, f90) - f0) * w
@@ -38,7 +38,7 @@ pub fn refract(n: V3, d: V3, cos: F, eta: F) -> Refracted {
     let sine = eta * n.cross(d).length();
     let k = (F::ONE - sine) * (F::ONE + sine);
     let total = sine.simd_ge(F::ONE);
-    let cos = k.fast_max(F::ZERO).sqrt();
+    let cos = k.at_least(F::ZERO).sqrt();
     Refracted { direction: (across * eta - n * cos).normalize(), cos, total }
 }
 
@@ -62,7 +62,7 @@ fn grazing(shading: Shading, s: &Surface) -> F {
         return splat(1.0);
     }
     let f0 = s.colour(Channel::F0);
-    (F::ONE - s.value(Channel::Roughness)).fast_max(f0.x).fast_max(f0.y).fast_max(f0.z)
+    (F::ONE - s.value(Channel::Roughness)).at_least(f0.x).at_least(f0.y).at_least(f0.z)
 }
 
 /// Splits rays with unit directions `d` at the surfaces `s`.
@@ -86,8 +86,8 @@ pub fn split(shading: Shading, s: &Surface, d: V3) -> Split {
     // never over where the true surface would mirror them, which flat mirrors show at grazing.
     let mirrored = d + n * (cos + cos);
     let height = mirrored.dot(s.facing);
-    let least = (-d.dot(s.facing)).fast_max(splat(1e-6)).fast_min(splat(0.01));
-    let lift = (least - height).fast_max(F::ZERO);
+    let least = (-d.dot(s.facing)).at_least(splat(1e-6)).at_most(splat(0.01));
+    let lift = (least - height).at_least(F::ZERO);
     Split { reflectance, mirrored: (mirrored + s.facing * lift).normalize(), refracted, total }
 }
 

@@ -5,7 +5,7 @@
 //! 2014), over 4 n·l n·v: V = ½ / (n·l s_v + n·v s_l), s_x = √(α² (1-x)(1+x) + x²). F: Schlick.
 
 use super::fresnel::schlick;
-use crate::math::lanes::{F, V3, splat};
+use crate::math::lanes::{Bound, F, V3, splat};
 use crate::math::lanes_f64::in_f64;
 use crate::math::lanes_fn::sin_cos;
 use crate::math::sampling::basis;
@@ -41,7 +41,7 @@ pub fn masking(cos: F, alpha: F) -> F {
 pub fn visibility(n_l: F, n_v: F, alpha: F) -> F {
     let whole = n_l * smith(n_v, alpha) + n_v * smith(n_l, alpha);
     // Cosines under 1e-30 would overflow; the light they bring is nothing.
-    whole.simd_gt(F::ZERO) & (splat(0.5) / whole.fast_max(splat(1e-30)))
+    whole.simd_gt(F::ZERO) & (splat(0.5) / whole.at_least(splat(1e-30)))
 }
 
 /// π times the share of light from unit direction `l` that goes to `v`, per cosine; the same both
@@ -50,14 +50,14 @@ pub fn visibility(n_l: F, n_v: F, alpha: F) -> F {
 pub fn ggx(s: &Surface, l: V3, v: V3) -> V3 {
     let n = s.normal;
     let alpha = s.value(Channel::Roughness);
-    let alpha = (alpha * alpha).fast_max(splat(1e-3));
+    let alpha = (alpha * alpha).at_least(splat(1e-3));
     // For unit vectors v·h = l·h = |l + v| / 2.
     let sum = l + v;
     let length = sum.length();
     let h = sum * (F::ONE / length);
     let across = n.cross(h);
     let d = distribution(across.dot(across), n.dot(h), alpha);
-    let shown = visibility(n.dot(l).fast_max(F::ZERO), n.dot(v).fast_max(F::ZERO), alpha);
+    let shown = visibility(n.dot(l).at_least(F::ZERO), n.dot(v).at_least(F::ZERO), alpha);
     let fresnel = schlick(s.colour(Channel::F0), splat(1.0), length * splat(0.5));
     // Straight against the light there is no h.
     (fresnel * s.colour(Channel::Specular) * (d * shown)) & length.simd_gt(F::ZERO)
@@ -72,22 +72,22 @@ pub fn ggx(s: &Surface, l: V3, v: V3) -> V3 {
 pub fn sample(s: &Surface, v: V3, (x, y): (F, F)) -> (V3, V3) {
     let n = s.normal;
     let alpha = s.value(Channel::Roughness);
-    let alpha = (alpha * alpha).fast_max(splat(1e-3));
+    let alpha = (alpha * alpha).at_least(splat(1e-3));
     let (a, b) = basis(n);
     // Normals are bent: the eye may look at the back of one.
-    let n_v = v.dot(n).fast_max(splat(1e-3));
+    let n_v = v.dot(n).at_least(splat(1e-3));
     // The eye as seen by the facets stretched to a half sphere.
     let eye = V3::new(v.dot(a) * alpha, v.dot(b) * alpha, n_v).normalize();
     let z = (F::ONE - y) * (F::ONE + eye.z) - eye.z;
-    let r = ((F::ONE - z) * (F::ONE + z)).fast_max(F::ZERO).sqrt();
+    let r = ((F::ONE - z) * (F::ONE + z)).at_least(F::ZERO).sqrt();
     let (sin, cos) = sin_cos(x * splat(TAU));
     let facet = V3::new(r * cos, r * sin, z) + eye;
-    let h = (a * (facet.x * alpha) + b * (facet.y * alpha) + n * facet.z.fast_max(F::ZERO)).normalize();
+    let h = (a * (facet.x * alpha) + b * (facet.y * alpha) + n * facet.z.at_least(F::ZERO)).normalize();
     let v_h = v.dot(h);
     let l = (h * (v_h + v_h) - v).normalize();
     let n_l = n.dot(l);
     // G2 / G1 = (n·v + s_v) n·l / (n·l s_v + n·v s_l) = 2 V n·l (n·v + s_v).
-    let through = visibility(n_l.fast_max(F::ZERO), n_v, alpha) * n_l * (n_v + smith(n_v, alpha));
+    let through = visibility(n_l.at_least(F::ZERO), n_v, alpha) * n_l * (n_v + smith(n_v, alpha));
     let weight = schlick(s.colour(Channel::F0), splat(1.0), v_h) * (through + through);
     (l, weight & n_l.simd_gt(F::ZERO))
 }

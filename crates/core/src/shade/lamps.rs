@@ -1,7 +1,7 @@
 //! Lamps as shading sees them: points, spots and shining rectangles in one form.
 
 use crate::math::Vec3;
-use crate::math::lanes::{F, V3, splat};
+use crate::math::lanes::{Bound, F, V3, splat};
 use crate::math::sampling::r2;
 use crate::scene::{LightKind, Material, Scene};
 use std::f32::consts::PI;
@@ -66,7 +66,7 @@ impl Lamp {
     #[inline(always)]
     pub fn lobe(&self, d: V3) -> F {
         let c = d.dot(V3::splat(self.axis));
-        let x = ((c - splat(self.outer)) * splat(self.gain)).fast_max(F::ZERO).fast_min(F::ONE);
+        let x = ((c - splat(self.outer)) * splat(self.gain)).at_least(F::ZERO).at_most(F::ONE);
         // Spots ease in.
         if self.is_emitter { x } else { x * x * (splat(3.0) - (x + x)) }
     }

@@ -5,7 +5,7 @@
 //! without cancellation or a case for small g: with k = (1 - g) + 2 g u,
 //! 1 - cos = 2 ((1 - g) / k)² (1 - u)(1 + g u). Own rearrangement.
 
-use crate::math::lanes::{F, max, min};
+use crate::math::lanes::{Bound, F};
 use crate::math::lanes_f64::{D, in_f64, splat_d};
 
 /// |g| beyond this counts as this: the peak would no longer be light that scatters.
@@ -24,7 +24,7 @@ fn forward(g: f32) -> (f64, bool) {
 #[inline(always)]
 pub fn phase(g: f32, cos: F) -> F {
     let (g, back) = forward(g);
-    let cos = min(max(cos, -F::ONE), F::ONE);
+    let cos = cos.at_least(-F::ONE).at_most(F::ONE);
     let cos = if back { -cos } else { cos };
     let (peak, slope) = (splat_d((1.0 - g) * (1.0 - g)), splat_d(g + g));
     let scale = splat_d((1.0 - g) * (1.0 + g) * (0.25 * std::f64::consts::FRAC_1_PI));
@@ -49,7 +49,7 @@ pub struct Turn {
 #[inline(always)]
 pub fn turn(g: f32, u: F) -> Turn {
     let (g, back) = forward(g);
-    let u = min(max(u, F::ZERO), F::ONE);
+    let u = u.at_least(F::ZERO).at_most(F::ONE);
     let (e, g) = (splat_d(1.0 - g), splat_d(g));
     let one = splat_d(1.0);
     // 1 - cos and 1 + cos; going back is going on with the other half of the turn.

@@ -8,7 +8,7 @@
 
 use crate::cull::{Bounds, Dop, View};
 use crate::math::Vec3;
-use crate::math::lanes::{F, V3, splat};
+use crate::math::lanes::{Bound, F, V3, splat};
 use crate::scene::PointLight;
 
 /// Small lights of a scene that shine; those after them don't.
@@ -111,7 +111,7 @@ impl Points {
             }
             // The same operations as for the distance to a point of the box, which is never less.
             let c = eight.position;
-            let beside = |c: F, lo: f32, hi: f32| (splat(lo) - c).fast_max(c - splat(hi)).fast_max(F::ZERO);
+            let beside = |c: F, lo: f32, hi: f32| (splat(lo) - c).at_least(c - splat(hi)).at_least(F::ZERO);
             let off = V3::new(beside(c.x, lo.x, hi.x), beside(c.y, lo.y, hi.y), beside(c.z, lo.z, hi.z));
             let near = off.dot(off).simd_lt(eight.radius * eight.radius).to_bitmask() as u64;
             let mut bits = if cull { near & among } else { among };

@@ -5,7 +5,7 @@
 //! end of a row and the beginning of the next. A field has eight numbers per element, which are those of one
 //! cell or one number each of eight cells along x.
 
-use crate::math::lanes::{F, splat};
+use crate::math::lanes::{Bound, F, splat};
 use crate::parallel;
 
 /// Cells of the border before each row, and after the last.
@@ -73,8 +73,8 @@ impl Grid {
     pub fn sample(&self, field: &[Eight], at: F) -> F {
         let [x, y, z] = self.size.map(|n| n as f32);
         let most = F::new([x, y, z, 0.0, 0.0, 0.0, 0.0, 0.0]);
-        let at = at.fast_max(F::ZERO).fast_min(most + F::ONE);
-        let below = at.fast_min(most).fast_trunc_int();
+        let at = at.at_least(F::ZERO).at_most(most + F::ONE);
+        let below = at.at_most(most).fast_trunc_int();
         let within = at - F::from_i32x8(below);
         let (below, within) = (below.as_array(), within.as_array());
         let first = self.index([below[0] as usize, below[1] as usize, below[2] as usize]);

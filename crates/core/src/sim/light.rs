@@ -3,7 +3,7 @@
 use super::grid::{Eight, Grid, lanes};
 use super::{DENSITY, Simulation, State};
 use crate::counters::{Counter, Counters};
-use crate::math::lanes::{F, V3, least, splat};
+use crate::math::lanes::{Bound, F, V3, least, splat};
 use crate::math::lanes_fn::exp;
 use crate::scene::{Rules, Smoke, Voxels};
 use crate::shade::Lamp;
@@ -107,7 +107,7 @@ impl<'a> Volume<'a> {
             if !live.any() {
                 break;
             }
-            let step = left.fast_min(splat(length));
+            let step = left.at_most(splat(length));
             let t = from + step * splat(0.5);
             let p = rays.origin + rays.direction * t;
             let busy = live & t.simd_ge(enter) & is_full(p);
@@ -119,7 +119,7 @@ impl<'a> Volume<'a> {
             let mut source = V3::splat(smoke.ambient) + V3::splat(smoke.glow) * heat;
             for (i, lamp) in lamps.iter().enumerate() {
                 let way = V3::splat(lamp.position) - p;
-                let d2 = way.dot(way).fast_max(splat(smoke.cell * smoke.cell));
+                let d2 = way.dot(way).at_least(splat(smoke.cell * smoke.cell));
                 let l = way * (F::ONE / d2.sqrt());
                 let cos = l.dot(rays.direction);
                 let [weight, a, b] = smoke.phase;

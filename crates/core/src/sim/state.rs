@@ -15,7 +15,7 @@
 
 use super::grid::{Eight, Grid, lanes};
 use crate::counters::{Counter, Counters};
-use crate::math::lanes::{F, load, splat};
+use crate::math::lanes::{Bound, F, load, splat};
 use crate::scene::{Rules, Voxels};
 use std::mem::swap;
 
@@ -100,21 +100,21 @@ impl State {
                 new = grid.sample(cells, from);
                 let within = from - from.floor();
                 let halves = within * (F::ONE - within) * splat(0.5);
-                let (mut low, mut high) = (new.fast_min(old), new.fast_max(old));
+                let (mut low, mut high) = (new.at_most(old), new.at_least(old));
                 let mut bend = F::ZERO;
                 for (axis, step) in steps.into_iter().enumerate() {
                     let (a, b) = (cell(i - step), cell(i + step));
-                    low = low.fast_min(a).fast_min(b);
-                    high = high.fast_max(a).fast_max(b);
+                    low = low.at_most(a).at_most(b);
+                    high = high.at_least(a).at_least(b);
                     bend += (a + b - (old + old)) * splat(halves.as_array()[axis]);
                 }
-                new = (new - bend).fast_max(low).fast_min(high) * F::new(air.keep);
+                new = (new - bend).at_least(low).at_most(high) * F::new(air.keep);
                 let [.., density, heat, _, _, _] = new.to_array();
                 new += F::new(air.by_density) * splat(density) + F::new(air.by_heat) * splat(heat);
                 if kind != Voxels::EMPTY {
-                    new = new.fast_max(F::new(air.source));
+                    new = new.at_least(F::new(air.source));
                 }
-                new = quiet(new.fast_max(-most).fast_min(most));
+                new = quiet(new.at_least(-most).at_most(most));
             }
             *out = new.to_array();
             out[DARK..SOLID].copy_from_slice(&old.as_array()[DARK..SOLID]);

@@ -16,7 +16,7 @@
 use super::RATE;
 use super::instrument::*;
 use crate::math::hash::unit;
-use crate::math::lanes::{F, LANES, ONE, RAMP, TRUE, U, ZERO, max, min, select, splat, splat_u};
+use crate::math::lanes::{Bound, F, LANES, ONE, RAMP, TRUE, U, ZERO, select, splat, splat_u};
 use crate::math::lanes_fn::{exp, exp2, sin_turns, wrap};
 use crate::math::scalar;
 
@@ -178,7 +178,7 @@ impl Packet {
             self.column[column] = exp(splat(-samples) / (self.column[column] * RATE_F));
         }
         let c = &mut self.column;
-        c[ATTACK] = ONE / max(c[ATTACK] * RATE_F, ONE);
+        c[ATTACK] = ONE / (c[ATTACK] * RATE_F).at_least(ONE);
         c[RESONANCE] = ONE / c[RESONANCE];
         c[SWEEP_RISE] *= RATE_F;
         let taken = RAMP.simd_lt(splat(self.used as f32));
@@ -208,17 +208,17 @@ impl Packet {
         self.step = c[FREQUENCY] * (ONE + self.bend) * (ONE + c[VIBRATO] * swing);
         self.inverse = ONE / self.step;
 
-        let cutoff = min(c[CUTOFF] * exp2(c[SWEEP] * self.sweep), splat(14_000.0));
+        let cutoff = (c[CUTOFF] * exp2(c[SWEEP] * self.sweep)).at_most(splat(14_000.0));
         let x = cutoff * splat(core::f32::consts::PI / RATE as f32);
         let xx = x * x;
         let g = x * (splat(15.0) - xx) / (splat(15.0) - splat(6.0) * xx);
         let a = ONE / (ONE + g * (g + c[RESONANCE]));
         self.filter = [a, g * a, g * (g * a)];
 
-        self.bend = max(self.bend * c[BEND_FALL], LEAST);
-        self.index = max(self.index * c[INDEX_FALL], LEAST);
+        self.bend = (self.bend * c[BEND_FALL]).at_least(LEAST);
+        self.index = (self.index * c[INDEX_FALL]).at_least(LEAST);
         let next = splat((self.age + CONTROL) as f32);
-        let fallen = max(self.sweep * c[SWEEP_FALL], LEAST);
+        let fallen = (self.sweep * c[SWEEP_FALL]).at_least(LEAST);
         self.sweep = select(next.simd_lt(c[SWEEP_RISE]), next / c[SWEEP_RISE], fallen);
     }
 
@@ -239,10 +239,10 @@ impl Packet {
             let edge = ONE - splat(0.5) * self.inverse;
             let saw = |phase: F| {
                 let way = phase * self.inverse;
-                let (after, before) = (max(edge - way, ZERO), max(edge + way, ZERO));
+                let (after, before) = ((edge - way).at_least(ZERO), (edge + way).at_least(ZERO));
                 phase + phase + after * after - before * before
             };
-            let is_pulse = max(c[WAVE] - ONE, ZERO);
+            let is_pulse = (c[WAVE] - ONE).at_least(ZERO);
             let saws = saw(self.phase) - is_pulse * saw(wrap(self.phase + splat(0.3)));
             let tone = select(c[WAVE].simd_gt(ZERO), saws, sine);
             self.phase = wrap(self.phase + self.step);
@@ -256,7 +256,7 @@ impl Packet {
             // Between the edges of a pulse the first one falls to 0.
             self.integrators = [v1 + v1 - i1 + LEAST, v2 + v2 - i2];
             // Low, 0, is v2, a band, 1, is v1, and high, 2, the rest.
-            let high = max(c[PASS] - ONE, ZERO);
+            let high = (c[PASS] - ONE).at_least(ZERO);
             let band = c[PASS] - high - high;
             let passed = (ONE - c[PASS]) * v2 + band * v1 + high * (v0 - c[RESONANCE] * v1);
 
@@ -265,7 +265,7 @@ impl Packet {
             let goal = c[SUSTAIN] & !over;
             let fall = select(over, c[RELEASE], c[DECAY]);
             let fallen = goal + (self.envelope - goal) * fall;
-            let envelope = select(self.rising, min(self.envelope + c[ATTACK], ONE), fallen);
+            let envelope = select(self.rising, (self.envelope + c[ATTACK]).at_most(ONE), fallen);
             self.envelope = envelope & (envelope.simd_gt(splat(END)) | self.rising);
 
             let out = passed * self.envelope * (ONE - c[DUCK] * splat(*duck));

@@ -9,7 +9,7 @@
 use super::{Rays8, Span};
 use crate::counters::{Counter, Counters};
 use crate::math::Vec3;
-use crate::math::lanes::{F, INFINITY, TRUE, V3, max, splat};
+use crate::math::lanes::{Bound, F, INFINITY, TRUE, V3, splat};
 use crate::quality::Quality;
 use crate::scene::{Field, Form, Join, Node};
 
@@ -26,7 +26,7 @@ const REACH: f32 = 1.25;
 #[inline(always)]
 pub fn repeated(x: F, side: f32, most: f32) -> (F, F) {
     let at = (x * splat(1.0 / side) + splat(0.5)).floor();
-    let at = at.fast_max(splat(-most)).fast_min(splat(most));
+    let at = at.at_least(splat(-most)).at_most(splat(most));
     (at, x - at * splat(side))
 }
 
@@ -52,10 +52,10 @@ fn cell(field: &Field, p: V3) -> V3 {
 /// number's gradient in it, up to ½; the plain minimum, bit for bit, where |a - b| >= k or k is 0.
 #[inline(always)]
 pub fn smooth_min(a: F, b: F, k: f32) -> (F, F) {
-    let mut least = a.fast_min(b);
+    let mut least = a.at_most(b);
     let mut h = F::ZERO;
     if k > 0.0 {
-        h = (splat(k) - (a - b).abs()).fast_max(F::ZERO);
+        h = (splat(k) - (a - b).abs()).at_least(F::ZERO);
         least -= h * h * splat(0.25 / k);
         h *= splat(0.5 / k);
     }
@@ -77,8 +77,8 @@ pub fn form(node: &Node, p: V3) -> F {
         Form::Cross(half) => {
             // The bar along the longest coordinate is the nearest: it is seen in the other two.
             let (x, y, z) = (p.x.abs(), p.y.abs(), p.z.abs());
-            let (low, high) = (x.fast_min(y), x.fast_max(y));
-            p = V3::new(low.fast_min(z), high.fast_min(low.fast_max(z)), F::ZERO);
+            let (low, high) = (x.at_most(y), x.at_least(y));
+            p = V3::new(low.at_most(z), high.at_most(low.at_least(z)), F::ZERO);
             Vec3::new(half, half, 1e9)
         }
         Form::Round([half, height, distance]) => {
@@ -99,8 +99,8 @@ pub fn form(node: &Node, p: V3) -> F {
     let half = V3::splat(half);
     let q = V3::new(p.x.abs() - half.x, p.y.abs() - half.y, p.z.abs() - half.z);
     let zero = F::ZERO;
-    let outside = V3::new(q.x.fast_max(zero), q.y.fast_max(zero), q.z.fast_max(zero));
-    let inside = q.x.fast_max(q.y).fast_max(q.z).fast_min(zero);
+    let outside = V3::new(q.x.at_least(zero), q.y.at_least(zero), q.z.at_least(zero));
+    let inside = q.x.at_least(q.y).at_least(q.z).at_most(zero);
     outside.length() + inside - splat(node.rounding)
 }
 
@@ -163,16 +163,16 @@ pub fn field(rays: &Rays8, field: &Field, limit: F, quality: &Quality, counters:
             let reach =
                 splat(half.length() + node.rounding + REACH * blend) + epsilon * splat(4.0) * (F::ONE + away);
             let left = reach * reach - off.dot(off);
-            let half = left.fast_max(F::ZERO).sqrt() / speed;
+            let half = left.at_least(F::ZERO).sqrt() / speed;
             *near = left.simd_gt(F::ZERO) & half.simd_gt(middle);
-            from = near.select(from.fast_min(-middle - half), from);
-            to = near.select(to.fast_max(half - middle), to);
+            from = near.select(from.at_most(-middle - half), from);
+            to = near.select(to.at_least(half - middle), to);
         } else if node.join == Join::Union {
             (from, to) = (F::ZERO, INFINITY);
         }
     }
-    let start = enter.fast_max(from);
-    let end = exit.fast_min(to);
+    let start = enter.at_least(from);
+    let end = exit.at_most(to);
     let mut active = start.simd_lt(end);
     let mut found = F::ZERO;
     let mut t = active.select(start, F::ZERO);
@@ -194,7 +194,7 @@ pub fn field(rays: &Rays8, field: &Field, limit: F, quality: &Quality, counters:
         // The last step's slope carries it the rest of the way, if it has one.
         let slope = (last - value) / (t - last_t);
         // Without a slope to speak of it is no number, which the maximum takes for 0 on every processor.
-        let rest = max(value / slope, F::ZERO).fast_min((value + value).fast_max(F::ZERO) / speed);
+        let rest = (value / slope).at_least(F::ZERO).at_most((value + value).at_least(F::ZERO) / speed);
         t = arrived.select(t + rest, t);
         found |= arrived;
         active &= !arrived;
@@ -238,7 +238,7 @@ pub fn locate(field: &Field, p: V3, width: F, toward: V3) -> Point {
     let all = [TRUE; Field::MOST];
     let mut shares = [F::ZERO; Field::MOST];
     let value = distance(field, p, &all, Some(&mut shares));
-    let h = (splat(2e-3) + p.max_abs() * splat(4e-4)).fast_max(width * splat(0.5)).fast_min(splat(0.05));
+    let h = (splat(2e-3) + p.max_abs() * splat(4e-4)).at_least(width * splat(0.5)).at_most(splat(0.05));
     let mut sum = V3::ZERO;
     for axis in Vec3::AXES {
         let step = V3::splat(axis);
@@ -248,7 +248,7 @@ pub fn locate(field: &Field, p: V3, width: F, toward: V3) -> Point {
     // On a ridge or at a middle there is no gradient: there it points at the ray's origin.
     let none = sum.dot(sum).simd_gt(splat(1e-30));
     let outward = V3::select(none, sum, -toward).normalize();
-    let off = value.fast_max(splat(-0.05)).fast_min(splat(0.05));
+    let off = value.at_least(splat(-0.05)).at_most(splat(0.05));
     Point { point: p - outward * off, outward, shares }
 }
 
@@ -273,8 +273,8 @@ pub fn ambient_share(fields: &[Field], reach: f32, p: V3, n: V3, active: F, coun
         for tap in TAPS {
             let far = splat(reach * tap);
             let value = distance(field, p + n * far, &all, None);
-            hidden += (far - value).fast_max(F::ZERO).fast_min(far)
-                * splat(1.0 / (reach * tap * TAPS.len() as f32));
+            hidden +=
+                (far - value).at_least(F::ZERO).at_most(far) * splat(1.0 / (reach * tap * TAPS.len() as f32));
         }
         open *= F::ONE - (near & hidden);
     }

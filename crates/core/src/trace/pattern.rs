@@ -3,7 +3,7 @@
 //! Brick and scratches are drawn on the plane that the surface faces most: across x, y or z.
 
 use crate::math::hash::{mix_x8, unit_x8};
-use crate::math::lanes::{F, V3, splat, splat_u};
+use crate::math::lanes::{Bound, F, V3, splat, splat_u};
 use crate::math::noise::cell;
 
 /// A value and its gradient.
@@ -11,7 +11,7 @@ pub type Height = (F, V3);
 
 /// x² (3 - 2x) and its slope, x kept in 0..1.
 fn ease(x: F) -> (F, F) {
-    let x = x.fast_max(F::ZERO).fast_min(F::ONE);
+    let x = x.at_least(F::ZERO).at_most(F::ONE);
     (x * x * (splat(3.0) - (x + x)), splat(6.0) * x * (F::ONE - x))
 }
 
@@ -71,7 +71,7 @@ pub fn brick(p: V3, n: V3) -> Height {
     // Signed distances from the middle of the brick to its nearest edges.
     let (a, b) = (f.x - splat(0.5), (f.y - splat(0.5)) * splat(0.5));
     let (da, db) = (splat(0.5) - a.abs(), splat(0.25) - b.abs());
-    let (shape, slope) = ease(da.fast_min(db) * splat(1.0 / JOINT));
+    let (shape, slope) = ease(da.at_most(db) * splat(1.0 / JOINT));
     let slope = slope * high * splat(1.0 / JOINT);
     let inward = |x: F| x.simd_gt(F::ZERO).select(-slope, slope);
     let gradient = V3::select(da.simd_lt(db), along * inward(a), up * inward(b));

@@ -10,7 +10,7 @@
 //! expansion; the q-form is Kahan's.
 
 use super::{Rays8, Span};
-use crate::math::lanes::{F, V3, copysign, max, min, splat};
+use crate::math::lanes::{Bound, F, V3, copysign, splat};
 use crate::scene::{Cone, Cylinder};
 
 /// What both shapes know of a ray: its parts along the axis and across it.
@@ -48,10 +48,10 @@ impl Axial {
 /// tangent, it could be anything.
 #[inline(always)]
 fn roots(a: F, b: F, c: F, disc: F) -> (F, F) {
-    let q = -(b + copysign(disc.fast_max(F::ZERO).sqrt(), b));
+    let q = -(b + copysign(disc.at_least(F::ZERO).sqrt(), b));
     let x = q / a;
     let most = x.abs();
-    (x, min(most, max(-most, q.simd_eq(F::ZERO).select(F::ZERO, c / q))))
+    (x, most.at_most((-most).at_least(q.simd_eq(F::ZERO).select(F::ZERO, c / q))))
 }
 
 /// The interval where a ray is inside the side, cut by the slab `lo..hi` along the axis.
@@ -120,7 +120,7 @@ pub fn cylinder(rays: &Rays8, s: &Cylinder) -> Span {
     let (n, m) = (ray.n.length(), ray.m.length());
     let disc = (r * n - ray.cross) * (r * n + ray.cross);
     // As rays start near the shape, nothing is lost in -B ± √D, and the roots keep their order.
-    let (a, b, half) = (n * n, ray.n.dot(ray.m), disc.fast_max(F::ZERO).sqrt());
+    let (a, b, half) = (n * n, ray.n.dot(ray.m), disc.at_least(F::ZERO).sqrt());
     let parallel = a.simd_eq(F::ZERO);
     let inf = splat(f32::INFINITY);
     let side = (parallel.select(-inf, (-b - half) / a), parallel.select(inf, (half - b) / a));
@@ -152,7 +152,7 @@ pub fn cone(rays: &Rays8, s: &Cone) -> Span {
     // Flat across the axis (A > 0): between the roots, if these lie on this nappe. Steep: one
     // root on each nappe, and the inside goes on for ever. A = 0: the other root is at infinity.
     let flat = a.simd_gt(zero);
-    let (lo, hi) = (x.fast_min(y), x.fast_max(y));
+    let (lo, hi) = (x.at_most(y), x.at_least(y));
     let up = ray.direction.simd_gt(zero);
     let own = parallel.select(y, up.select(hi, lo));
     let middle = (lo + hi) * splat(0.5);

@@ -6,7 +6,7 @@
 //! Haines, Günther and Akenine-Möller, Ray Tracing Gems ch. 7.
 
 use super::{Rays8, Span};
-use crate::math::lanes::{F, V3, copysign, max, min, splat};
+use crate::math::lanes::{Bound, F, V3, copysign, splat};
 use crate::scene::Sphere;
 
 /// Where `rays` cross the sphere.
@@ -24,12 +24,12 @@ pub fn sphere(rays: &Rays8, s: &Sphere) -> Span {
     let one = q / a;
     // Never the larger of the two: at a tangent, with q lost to rounding, c/q could be anything.
     let most = one.abs();
-    let other = min(most, max(-most, q.simd_eq(F::ZERO).select(F::ZERO, c / q)));
+    let other = most.at_most((-most).at_least(q.simd_eq(F::ZERO).select(F::ZERO, c / q)));
     let hit = disc.simd_ge(F::ZERO);
     let miss = splat(-1.0);
     Span {
-        enter: hit.select(min(one, other), miss),
-        exit: hit.select(max(one, other), miss),
+        enter: hit.select(one.at_most(other), miss),
+        exit: hit.select(one.at_least(other), miss),
         enter_part: F::ZERO,
         exit_part: F::ZERO,
     }

@@ -12,7 +12,7 @@ use super::voxels::locate as on_voxels;
 use super::{Rays8, Shape};
 use crate::counters::{Counter, Counters};
 use crate::features;
-use crate::math::lanes::{F, V3, splat};
+use crate::math::lanes::{Bound, F, V3, splat};
 use crate::quality::Quality;
 use crate::scene::{Channel, Field, Join, Material, Pattern, Scene, Sphere};
 
@@ -100,7 +100,7 @@ fn blended(scene: &Scene, own: &Sphere, p: V3, n: V3) -> V3 {
             let v = p - V3::splat(other.centre);
             let len = v.length();
             let distance = (len - splat(other.radius)).abs();
-            let h = (k - distance).fast_max(F::ZERO) / k * splat(0.5);
+            let h = (k - distance).at_least(F::ZERO) / k * splat(0.5);
             normal = normal + (v * (F::ONE / len) - normal) * h;
         }
         normal = normal.normalize();
@@ -236,7 +236,7 @@ pub fn surface(scene: &Scene, quality: &Quality, rays: &Rays8, t: F, id: F, spre
         s.point = V3::select(mask, point, s.point);
         s.facing = V3::select(mask, outward, s.facing);
         s.normal = V3::select(mask, normal, s.normal);
-        let scale = scale.fast_max(point.max_abs()).fast_max(splat(1e-30));
+        let scale = scale.at_least(point.max_abs()).at_least(splat(1e-30));
         s.clearance = mask.select(scale * splat(4.0 / 8_388_608.0), s.clearance);
         let material = &scene.materials[material];
         for (lane, value) in s.material.iter_mut().zip(material.channels()) {

@@ -8,7 +8,7 @@
 use super::Surface;
 use super::pattern::{self, Height};
 use crate::features;
-use crate::math::lanes::{F, V3, splat};
+use crate::math::lanes::{Bound, F, V3, splat};
 use crate::math::noise::value_noise;
 use crate::scene::{Channel, Pattern, Texture};
 
@@ -55,21 +55,21 @@ pub fn texture(s: &mut Surface, d: V3, width: F) {
     }
     let fade = |footprint: F, finest: f32| {
         let details = footprint * scale * details;
-        (splat(2.0) - details * splat(2.0 * finest)).fast_max(F::ZERO).fast_min(F::ONE)
+        (splat(2.0) - details * splat(2.0 * finest)).at_least(F::ZERO).at_most(F::ONE)
     };
     let factor = F::ONE + grain * fade(width, 1.0) * value;
     for channel in 0..3 {
         s.material[channel] *= factor;
     }
     if features::BUMPS && relief.any() {
-        let long = width / s.normal.dot(d).abs().fast_max(splat(1e-3));
+        let long = width / s.normal.dot(d).abs().at_least(splat(1e-3));
         let (shown, steep) = (fade(long, FINEST_RELIEF), bump * scale);
         let slope = gradient * (steep * shown);
         s.normal = (s.normal - (slope - s.normal * slope.dot(s.normal))).normalize();
         let m = s.value(Channel::Roughness);
         let rough = (m * m * m * m + steep * steep * (F::ONE - shown) * splat(SLOPE2)).sqrt().sqrt();
         let roughness = &mut s.material[Channel::Roughness as usize];
-        *roughness = relief.select(rough.fast_min(F::ONE), m);
+        *roughness = relief.select(rough.at_most(F::ONE), m);
     }
 }
 

@@ -11,7 +11,7 @@ use super::{Rays8, Span};
 use crate::counters::{Counter, Counters};
 use crate::math::Vec3;
 use crate::math::hash::{mix_x8, unit_x8};
-use crate::math::lanes::{F, V3, from_bits, splat};
+use crate::math::lanes::{Bound, F, V3, from_bits, splat};
 use crate::math::noise;
 use crate::scene::Voxels;
 
@@ -37,7 +37,7 @@ pub fn voxels(rays: &Rays8, grid: &Voxels, limit: F, counters: &mut Counters) ->
     let d = d.map(|d| d.abs().simd_lt(splat(LEVEL)).select(splat(LEVEL), d));
     let inverse = d.map(|d| F::ONE / d);
     let up = d.map(|d| d.simd_gt(F::ZERO));
-    let room = inverse.iter().fold(splat(f32::INFINITY), |room, i| room.fast_min(i.abs())) * splat(ROOM);
+    let room = inverse.iter().fold(splat(f32::INFINITY), |room, i| room.at_most(i.abs())) * splat(ROOM);
     let place = |axis: usize, t: F| (o[axis] + d[axis] * t).floor();
     // Distances of the far faces of boxes of cells.
     let far = |from: &[F; 3], side: f32| -> [F; 3] {
@@ -46,7 +46,7 @@ pub fn voxels(rays: &Rays8, grid: &Voxels, limit: F, counters: &mut Counters) ->
     let mut cell: [F; 3] = std::array::from_fn(|axis| place(axis, now));
     for _ in 0..MOST_STEPS {
         let [x, y, z] = far(&cell, 1.0);
-        now = x.fast_min(y).fast_min(z);
+        now = x.at_most(y).at_most(z);
         busy &= now.simd_lt(exit);
         if !busy.any() {
             break;
@@ -81,10 +81,10 @@ pub fn voxels(rays: &Rays8, grid: &Voxels, limit: F, counters: &mut Counters) ->
         span.enter_part = hit.select((y & F::ONE) + (across[2] & splat(2.0)), span.enter_part);
         busy &= !hit;
         let [x, y, z] = far(&from, 4.0);
-        let leave = x.fast_min(y).fast_min(z) - room;
+        let leave = x.at_most(y).at_most(z) - room;
         let skip = from_bits(empty) & leave.simd_gt(now + room);
         for axis in 0..3 {
-            let last = place(axis, leave).fast_max(from[axis]).fast_min(from[axis] + splat(3.0));
+            let last = place(axis, leave).at_least(from[axis]).at_most(from[axis] + splat(3.0));
             cell[axis] = skip.select(last, cell[axis]);
         }
     }
@@ -120,10 +120,10 @@ pub fn locate(grid: &Voxels, p: V3, direction: V3, part: u32, width: F) -> Face 
     let middle = q - outward * splat(0.5);
     let value = grid.values(middle);
     let ([x, y, z], within) = noise::cell(middle);
-    let sharp = splat(grid.cell) / width.fast_max(splat(1e-3 * grid.cell));
+    let sharp = splat(grid.cell) / width.at_least(splat(1e-3 * grid.cell));
     let open = |x: F| {
-        let inside = x.fast_min(F::ONE - x) - splat(0.5 * grid.groove);
-        (inside * sharp + splat(0.5)).fast_max(F::ZERO).fast_min(F::ONE)
+        let inside = x.at_most(F::ONE - x) - splat(0.5 * grid.groove);
+        (inside * sharp + splat(0.5)).at_least(F::ZERO).at_most(F::ONE)
     };
     let own = unit_x8(mix_x8(mix_x8(x, y), z)) * splat(grid.variation);
     let shade = open(within.x) * open(within.y) * open(within.z) * (F::ONE - own);

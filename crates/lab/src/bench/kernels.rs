@@ -5,7 +5,7 @@
 
 use crate::subject::Subject;
 use luc_core::counters::Counters;
-use luc_core::math::lanes::{F, RAMP, V3, splat};
+use luc_core::math::lanes::{Bound, F, RAMP, V3, splat};
 use luc_core::math::{lanes_fn, noise};
 use luc_core::post::Display;
 use luc_core::quality::Quality;
@@ -64,7 +64,7 @@ fn first_rays(subject: &Subject, n: u32) {
         let (x, y) = (i * 8 % SIZE.0, i * 8 / SIZE.0 % SIZE.1);
         let direction = stage.directions(splat(x as f32 + 0.5) + RAMP, splat(y as f32 + 0.5));
         let hit = nearest(&scene, &quality, &Rays8 { origin, direction }, u64::MAX, &mut Counters::default());
-        sum += hit.t.fast_min(splat(1e3));
+        sum += hit.t.at_most(splat(1e3));
     }
     black_box(sum);
 }

@@ -1,7 +1,7 @@
 //! Numbers that a formula can be written in once: f32, f64, and packets of either.
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
-use luc_core::math::lanes::{self, F};
+use luc_core::math::lanes::{self, Bound, F};
 use luc_core::math::lanes_f64::{D, splat_d};
 use luc_core::math::lanes_fn;
 
@@ -69,10 +69,10 @@ impl Real for F {
         F::floor(self)
     }
     fn min(self, b: Self) -> Self {
-        lanes::min(self, b)
+        self.at_most(b)
     }
     fn max(self, b: Self) -> Self {
-        lanes::max(self, b)
+        self.at_least(b)
     }
     fn pick(self, a: Self, b: Self) -> Self {
         self.simd_ge(F::ZERO).select(a, b)
@@ -93,10 +93,10 @@ impl Real for D {
         D::floor(self)
     }
     fn min(self, b: Self) -> Self {
-        self.fast_min(b)
+        self.at_most(b)
     }
     fn max(self, b: Self) -> Self {
-        self.fast_max(b)
+        self.at_least(b)
     }
     fn pick(self, a: Self, b: Self) -> Self {
         self.simd_ge(D::splat(0.0)).select(a, b)

@@ -37,8 +37,9 @@ fn masks_convert_to_bits_and_back() {
 #[test]
 fn minimum_and_maximum_return_the_second_argument_for_nan() {
     let (a, nan) = (splat(1.0), splat(f32::NAN));
-    assert_eq!((min(nan, a), max(nan, a), min(a, splat(2.0)), max(a, splat(2.0))), (a, a, a, splat(2.0)));
-    assert!(min(a, nan).as_array()[0].is_nan() && max(a, nan).as_array()[0].is_nan());
+    let (low, high) = (a.at_most(splat(2.0)), a.at_least(splat(2.0)));
+    assert_eq!((nan.at_most(a), nan.at_least(a), low, high), (a, a, a, splat(2.0)));
+    assert!(a.at_most(nan).as_array()[0].is_nan() && a.at_least(nan).as_array()[0].is_nan());
 }
 
 #[test]
