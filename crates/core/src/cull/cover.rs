@@ -7,7 +7,7 @@
 //! cell; for other shapes their least depth anywhere.
 
 use super::dop::nearest_in_cone;
-use crate::math::Vec3;
+use crate::math::{Vec3, cross};
 use crate::render::Stage;
 use crate::trace::Shape;
 use glam::Vec2;
@@ -21,7 +21,7 @@ pub fn may_cover(stage: &Stage, index: usize, centre: Vec2, half: Vec2, depths: 
         Shape::Sphere(s) => ball_may_cover(stage.view.local(s.centre), s.radius, centre, half, deepest),
         Shape::Triangle(s) => {
             let [a, b, c] = s.corners.map(|p| stage.view.local(p));
-            let n = (b - a).cross(c - a);
+            let n = cross(b - a, c - a);
             let height = n.dot(a);
             let signs =
                 [Vec2::new(-1.0, 1.0), Vec2::new(1.0, 1.0), Vec2::new(-1.0, -1.0), Vec2::new(1.0, -1.0)];

@@ -8,7 +8,7 @@
 
 use crate::features;
 use crate::math::lanes::{Bound, F, splat};
-use crate::math::{Mat3, Vec3};
+use crate::math::{Mat3, Vec3, cross};
 use crate::scene::{Beam, Scene};
 use crate::trace::Shape;
 use glam::Vec2;
@@ -219,7 +219,7 @@ impl Dop {
     /// close to the eye. It holds in directions up to 55° off forward, and in all if forward is
     /// across the bar.
     fn bar(view: &View, base: Vec3, axis: Vec3, r: f32) -> Dop {
-        let from_axis = (view.origin - base).cross(axis).length();
+        let from_axis = cross(view.origin - base, axis).length();
         if from_axis < 8.0 * r + 8.0 * NEAR {
             return Dop::EVERYWHERE;
         }

@@ -4,7 +4,7 @@
 //! A shape whose bound misses the bound of the points can't shadow any of them.
 
 use super::dop::{Dop, View, nearest_in_cone};
-use crate::math::Vec3;
+use crate::math::{Vec3, cross};
 use crate::scene::{Field, Scene};
 use crate::shade::Lamp;
 use crate::trace::Shape;
@@ -94,7 +94,7 @@ impl Shaft {
             Shape::Plane(p) => Some((p.point, p.normal)),
             Shape::Triangle(t) => {
                 let [a, b, c] = t.corners;
-                Some((a, (b - a).cross(c - a).normalize_or_zero()))
+                Some((a, cross(b - a, c - a).normalize_or_zero()))
             }
             _ => None,
         };

@@ -62,7 +62,7 @@ mod tests {
             let (x, y) = (x.lane(0), y.lane(0));
             let off = [x.dot(y), x.dot(n), y.dot(n), x.length() - 1.0, y.length() - 1.0];
             assert!(off.iter().all(|e| e.abs() <= 4e-7), "{off:?} at {n:?}");
-            assert!((x.cross(y) - n).length() < 1e-6, "right-handed at {n:?}");
+            assert!((crate::math::cross(x, y) - n).length() < 1e-6, "right-handed at {n:?}");
         }
     }
 

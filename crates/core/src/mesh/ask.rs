@@ -3,8 +3,8 @@
 use super::Assembly;
 use crate::bvh::Stack;
 use crate::counters::Counters;
-use crate::math::Vec3;
 use crate::math::lanes::{F, V3, greatest, splat, twice};
+use crate::math::{Vec3, cross};
 use crate::trace::Rays8;
 
 /// The pyramid that four rays from one point span, up to some distance.
@@ -33,7 +33,7 @@ impl Pyramid {
         let reach = p[0].length() + p[1].length() + p[2].length();
         let along = |n: Vec3| V3::splat(n).dot(self.corners);
         for i in 0..3 {
-            let n = p[i].cross(p[(i + 1) % 3]);
+            let n = cross(p[i], p[(i + 1) % 3]);
             let third = n.dot(p[(i + 2) % 3]);
             let n = if third < 0.0 { -n } else { n };
             let size = n.length();
@@ -42,7 +42,7 @@ impl Pyramid {
                 return false;
             }
         }
-        let n = (p[1] - p[0]).cross(p[2] - p[0]);
+        let n = cross(p[1] - p[0], p[2] - p[0]);
         let height = n.dot(p[0]);
         // 1 / distance of its plane along the corners.
         let inverse = along(n) / splat(height);

@@ -356,7 +356,7 @@ fn a_lathed_body_is_closed_and_faces_outwards() {
         let middle = (a + b) * 0.5;
         let mut edges = std::collections::BTreeMap::new();
         for [p, q, r] in list {
-            assert!((q - p).cross(r - p).dot(p - middle) > 0.0, "inside out: {a:?} {b:?}");
+            assert!(crate::math::cross(q - p, r - p).dot(p - middle) > 0.0, "inside out: {a:?} {b:?}");
             for (from, to) in [(p, q), (q, r), (r, p)] {
                 let edge = [from, to].map(|p| (p + Vec3::ZERO).to_array().map(f32::to_bits));
                 *edges.entry(edge).or_insert(0) += 1;

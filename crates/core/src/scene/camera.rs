@@ -1,7 +1,7 @@
 //! A pinhole camera: position, target, roll and horizontal field of view.
 
 use crate::math::scalar::sin_cos;
-use crate::math::{Mat3, Vec3};
+use crate::math::{Mat3, Vec3, cross};
 
 /// Where the eye is and what it looks at.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,10 +29,10 @@ impl Camera {
     /// its up vector.
     pub fn world_from_camera(&self) -> Mat3 {
         let forward = (self.target - self.position).normalize_or(Vec3::NEG_Z);
-        let right = forward.cross(Vec3::Y);
-        let right = if right.length_squared() > 1e-12 { right } else { forward.cross(Vec3::Z) };
+        let right = cross(forward, Vec3::Y);
+        let right = if right.length_squared() > 1e-12 { right } else { cross(forward, Vec3::Z) };
         let right = right.normalize();
-        let up = right.cross(forward);
+        let up = cross(right, forward);
         let (sin, cos) = sin_cos(self.roll);
         Mat3::from_cols(right * cos + up * sin, up * cos - right * sin, forward)
     }

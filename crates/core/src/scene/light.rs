@@ -1,6 +1,6 @@
 //! Lamps and shining rectangles.
 
-use crate::math::Vec3;
+use crate::math::{Vec3, cross};
 
 /// What shape a lamp's light has.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,12 +61,12 @@ impl Emitter {
     /// A rectangle of `width` by `height` whose bright side faces `target`, sides level.
     pub fn facing(centre: Vec3, target: Vec3, width: f32, height: f32, radiance: Vec3) -> Self {
         let n = (target - centre).normalize_or(Vec3::NEG_Y);
-        let u = Vec3::Y.cross(n).normalize_or(Vec3::X);
-        Self { centre, u, v: n.cross(u), half: [width * 0.5, height * 0.5], radiance }
+        let u = cross(Vec3::Y, n).normalize_or(Vec3::X);
+        Self { centre, u, v: cross(n, u), half: [width * 0.5, height * 0.5], radiance }
     }
 
     /// Unit normal of the bright side.
     pub fn normal(&self) -> Vec3 {
-        self.u.cross(self.v)
+        cross(self.u, self.v)
     }
 }

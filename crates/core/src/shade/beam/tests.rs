@@ -36,9 +36,9 @@ fn equals_the_integral_where_it_runs_free() {
         b.fade = if case & 1 == 0 { 0.0 } else { 0.3 };
         let (axis, length) = b.along();
         let aim = b.from + axis * random.range(0.3, 0.7) * length;
-        let side = axis.cross(random.direction()).normalize();
+        let side = crate::math::cross(axis, random.direction()).normalize();
         let d = (side + axis * random.range(-1.0, 1.0)).normalize();
-        let off = axis.cross(side) * random.range(0.0, 2.0) * b.width;
+        let off = crate::math::cross(axis, side) * random.range(0.0, 2.0) * b.width;
         let o = aim + off - d * 6.0;
         let got = beam(&b, &packet(|| (o, d)), F::ZERO, INFINITY).x.as_array()[5];
         let want = integral(&b, o, d, 12.0);

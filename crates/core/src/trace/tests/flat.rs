@@ -154,7 +154,7 @@ fn random_triangles() {
         let at = random.vector(-6, 8) * size;
         let e = [random.direction() * size, random.direction() * (size * random.size(-8, 1))];
         let s = tri([at, at + e[0], at + e[1]]);
-        let n = e[0].cross(e[1]).normalize_or(Vec3::Y);
+        let n = crate::math::cross(e[0], e[1]).normalize_or(Vec3::Y);
         let rays = packet(|| {
             let (mut x, mut y) = (random.range(0.0, 1.0), random.range(0.0, 1.0));
             match random.bits() % 4 {
