@@ -7,7 +7,7 @@
 //! of seven taps (sigma 1.22 px), and the octaves are joined bilinearly with weights 0.35, 0.28,
 //! 0.22 and 0.15 (after Jimenez 2014, with fixed weights).
 
-use super::picture::{PAD, Picture, REACH};
+use super::picture::{LIMIT, PAD, Picture, REACH, ROWS};
 use crate::math::lanes::{Bound, F, V3, from_bits, load, splat};
 use crate::parallel;
 use crate::render::Stage;
@@ -18,9 +18,6 @@ use std::sync::atomic::{AtomicBool, Ordering};
 const LINES: u32 = 270;
 const WEIGHTS: [f32; 4] = [0.35, 0.28, 0.22, 0.15];
 const KNEE: f32 = 0.5;
-const LIMIT: f32 = 12.0;
-/// Rows that are gathered as one piece of work: waking a thread costs more than a few rows.
-const ROWS: usize = 16;
 
 /// Gathers the light over the threshold in the first octave; false if there is no such light. `read`
 /// gives eight pixels from a place on.

@@ -5,7 +5,7 @@
 
 use super::bloom::Bloom;
 use super::effect::{self, Around};
-use super::picture::{PAD, Picture, REACH};
+use super::picture::{PAD, Picture, REACH, ROWS};
 use crate::counters::Counters;
 use crate::features;
 use crate::math::hash::hash2;
@@ -13,9 +13,6 @@ use crate::math::lanes::{Bound, F, RAMP, V3, splat};
 use crate::parallel;
 use crate::sample::Tile;
 use crate::scene::{Effect, Kind};
-
-/// Rows that are done as one piece of work.
-const ROWS: usize = 16;
 
 /// A picture of display values and what its effects need; lives from frame to frame.
 #[derive(Default)]

@@ -8,7 +8,7 @@
 use super::bloom::Bloom;
 use super::chain::Chain;
 use super::effect::noise;
-use super::picture::Picture;
+use super::picture::{Picture, ROWS};
 use crate::counters::{Counter, Counters};
 use crate::math::Vec3;
 use crate::math::hash::hash2;
@@ -20,9 +20,6 @@ use crate::shade::Points;
 use crate::study::Phase;
 use crate::trace::ramp;
 use crate::{features, parallel};
-
-/// Rows that are finished as one piece of work.
-const ROWS: usize = 16;
 
 /// Whether something may come between tiles and pixels.
 pub const KEEPS: bool = features::EFFECTS || features::SPLIT;

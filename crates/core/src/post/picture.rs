@@ -1,6 +1,6 @@
 //! Pictures as planes of numbers, with their edges repeated, so that filters need not ask where they are.
 
-use crate::math::lanes::{Bound, F, RAMP, V3, pick, splat, splat_u};
+use crate::math::lanes::{Bound, F, RAMP, V3, load, pick, splat, splat_u};
 use crate::parallel;
 
 /// The seven taps of the blur: row six of Pascal's triangle.
@@ -8,8 +8,10 @@ const TAPS: [f32; 7] =
     [1.0 / 64.0, 6.0 / 64.0, 15.0 / 64.0, 20.0 / 64.0, 15.0 / 64.0, 6.0 / 64.0, 1.0 / 64.0];
 /// Values that are blurred as one piece of work.
 const PIECE: usize = 1 << 15;
-/// Brightest value that is read.
-const LIMIT: f32 = 12.0;
+/// Brightest value that is read, and that glows.
+pub const LIMIT: f32 = 12.0;
+/// Rows that are done as one piece of work: waking a thread costs more than a few rows.
+pub const ROWS: usize = 16;
 /// Values before and after each row that repeat its ends.
 pub const PAD: usize = 8;
 /// Rows above and below the picture that repeat its first and last: the reach of the taps.
@@ -75,7 +77,7 @@ impl Picture {
     pub fn near(&self, x: usize, y: usize, right: isize, down: isize) -> V3 {
         let at = self.at(x, y).wrapping_add_signed(down * self.line() as isize + right);
         let colour =
-            |k: usize| load(&self.light, at + k * self.stride()).at_least(F::ZERO).at_most(splat(LIMIT));
+            |k: usize| load(&self.light[at + k * self.stride()..]).at_least(F::ZERO).at_most(splat(LIMIT));
         V3::new(colour(0), colour(1), colour(2))
     }
 
@@ -135,7 +137,7 @@ impl Picture {
                 for (colour, add) in [add.x, add.y, add.z].into_iter().enumerate() {
                     let at = self.at(x, y) + colour * stride;
                     let to = &mut self.light[at..at + 8];
-                    to.copy_from_slice((load(to, 0) * splat(own) + add).as_array());
+                    to.copy_from_slice((load(to) * splat(own) + add).as_array());
                 }
             }
         }
@@ -155,12 +157,12 @@ impl Picture {
         let offsets = (columns - splat(first)).trunc_int().cast_unsigned();
         let colour = |k: usize| {
             let upper = &self.light[start + k * self.stride()..];
-            let a = load(upper, 0);
+            let a = load(upper);
             if scale == 1 {
                 return a;
             }
             // Eight pixels lie on six columns at most.
-            let near = a + (load(&upper[self.line()..], 0) - a) * fy;
+            let near = a + (load(&upper[self.line()..]) - a) * fy;
             let left = pick(near, offsets);
             left + (pick(near, offsets + splat_u(1)) - left) * fx
         };
@@ -176,15 +178,9 @@ fn spread(from: &[f32], out: &mut [f32], step: usize) {
         for (i, eight) in out.chunks_exact_mut(8).enumerate() {
             let taps = TAPS.into_iter().enumerate();
             let sum = taps.fold(F::ZERO, |sum, (k, tap)| {
-                sum + load(from, piece * PIECE + 8 * i + k * step) * splat(tap)
+                sum + load(&from[piece * PIECE + 8 * i + k * step..]) * splat(tap)
             });
             eight.copy_from_slice(sum.as_array());
         }
     });
-}
-
-/// Eight numbers from `at` on.
-#[inline(always)]
-fn load(plane: &[f32], at: usize) -> F {
-    F::new(plane[at..at + 8].try_into().unwrap_or_default())
 }

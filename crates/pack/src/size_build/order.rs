@@ -21,6 +21,9 @@ use std::process::Command;
 /// If this variable of the environment is set, this program has been called as a linker.
 pub const VARIABLE: &str = "LUC_PACK_LINKS";
 
+/// What only the intro is linked with: see the project's build.rs.
+const INTRO: &str = "-nostartfiles";
+
 /// Lengths of the sequences that are compared, bytes.
 const SEQUENCES: [usize; 3] = [2, 3, 4];
 /// What many functions have says nothing.
@@ -39,8 +42,14 @@ struct Piece {
     bytes: Vec<u8>,
 }
 
-/// Links as the C compiler does with these arguments, functions and constants in order; its exit code.
+/// Links as the C compiler does with these arguments, the intro with its functions and constants in order;
+/// the compiler's exit code.
 pub fn link(arguments: &[OsString]) -> Result<i32, Error> {
+    let mut command = Command::new("cc");
+    // Build scripts come here too: they have the same target.
+    if !arguments.iter().any(|argument| argument == INTRO) {
+        return run(command.args(arguments));
+    }
     let mut code = Vec::new();
     let mut constants = Vec::new();
     for path in arguments.iter().map(Path::new).filter(|path| path.extension().is_some_and(|e| e == "o")) {
@@ -61,12 +70,12 @@ pub fn link(arguments: &[OsString]) -> Result<i32, Error> {
     let script = PathBuf::from(output.map_or("a.out".into(), OsString::clone)).with_extension("ld");
     let text = block(".text", &code) + &block(".rodata", &constants);
     std::fs::write(&script, text).map_err(Error::file(&script))?;
-    let mut command = Command::new("cc");
-    // Unwinding is called by nothing that is kept, but would still make the program ask for its library. Build
-    // scripts, which are linked by this program too, have it.
-    let is_script = output.is_some_and(|path| path.to_string_lossy().contains("build_script"));
-    let kept = arguments.iter().filter(|argument| is_script || *argument != "-lgcc_s");
-    command.args(kept).arg("-T").arg(&script);
+    // Unwinding is called by nothing that is kept, but would still make the program ask for its library.
+    let kept = arguments.iter().filter(|argument| *argument != "-lgcc_s");
+    run(command.args(kept).arg("-T").arg(&script))
+}
+
+fn run(command: &mut Command) -> Result<i32, Error> {
     let status = command.status().map_err(Error::file("cc"))?;
     Ok(status.code().unwrap_or(1))
 }
