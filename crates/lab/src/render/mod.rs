@@ -137,7 +137,7 @@ pub fn run(args: &[String]) -> Result<(), String> {
     let scene = studio::scene(&body, &materials, &pose, options.size, options.floor);
     let mut picture = Picture::new(options.size);
     let begin = Instant::now();
-    let n = options.frame.unwrap_or(0);
+    let n = options.frame.unwrap_or(0) % ROUND;
     Renderer::default().frame(&scene, n, options.size, &options.quality, &mut picture.pixels);
     let drawn = begin.elapsed();
     let out = options.out.unwrap_or_else(|| options.file.with_extension("png"));
