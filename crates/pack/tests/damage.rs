@@ -34,12 +34,13 @@ fn flipped_bits_and_truncations_end() {
                 bytes[at] ^= 1 << bit;
                 format!("{name}, bit {bit} of byte {at} flipped")
             };
-            // An error here is the system's refusal to start the file at all.
+            // An error here is the system's refusal to start the file at all. A flip where the opener sets its
+            // exit code can make that any number, even after the sentence.
             if let Ok(result) = result_of(&path, &bytes) {
-                assert!(
-                    !result.status.success() && (result.status != good.status || result == good),
-                    "{what}"
-                );
+                let is_whole = result == good;
+                let is_told = result.output.is_empty() && result.errors == "program: damaged file\n";
+                let has_failed = !result.status.success() && result.status != good.status;
+                assert!(is_whole || is_told || has_failed, "{what}: {result:?}");
             }
         }
     }
