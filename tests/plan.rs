@@ -200,7 +200,7 @@ fn a_fill_light_shines_through_bodies_and_casts_no_ray() {
     let light = |kind| Light { position: Vec3::Y * 8.0, colour: Vec3::splat(40.0), kind };
     let draw = |kind: LightKind, spheres: Vec<Sphere>| {
         let mut scene = Scene { planes: vec![plane], spheres, lights: vec![light(kind)], ..Scene::default() };
-        scene.materials.push(Material::default());
+        scene.materials.push(Material { colour: Vec3::splat(0.5), ..Material::default() });
         // Straight down from under the ball.
         scene.camera.position = Vec3::new(0.0, 3.0, 0.1);
         scene.camera.target = Vec3::ZERO;
@@ -210,13 +210,13 @@ fn a_fill_light_shines_through_bodies_and_casts_no_ray() {
         let count = |counter| renderer.counters.get(counter);
         let counts = (count(Counter::ShadowRays) > 0, count(Counter::FillLights) > 0);
         let plan = Plan::of(&scene, &quality);
-        assert_eq!(counts, (plan.names(Counter::ShadowRays), plan.names(Counter::FillLights)), "{kind:?}");
-        (pixels, counts)
+        (pixels, counts, (plan.names(Counter::ShadowRays), plan.names(Counter::FillLights)))
     };
-    let (open, counts) = draw(LightKind::Point, vec![]);
-    assert_eq!(counts, (true, false));
-    assert!(draw(LightKind::Point, vec![ball]).0 != open, "the ball hides the lamp");
-    let (filled, counts) = draw(LightKind::Fill, vec![ball]);
-    assert_eq!(counts, (false, true));
+    let (open, ..) = draw(LightKind::Point, vec![]);
+    let (hidden, counts, named) = draw(LightKind::Point, vec![ball]);
+    assert_eq!([counts, named], [(true, false); 2]);
+    assert!(hidden != open, "the ball hides the lamp");
+    let (filled, counts, named) = draw(LightKind::Fill, vec![ball]);
+    assert_eq!([counts, named], [(false, true); 2]);
     assert!(filled == open);
 }
