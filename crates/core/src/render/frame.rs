@@ -120,7 +120,8 @@ impl Renderer {
         let passes: [(Pass, bool); 3] = [(refine, true), (smooth_edges, false), (beams, false)];
         let mut sums = Vec::new();
         let mut ledger = Ledger::default();
-        for pattern in 0..quality.average {
+        let patterns = if features::AVERAGE { quality.average } else { 1 };
+        for pattern in 0..patterns {
             // The first pattern lies in the middle of the pixels.
             (stage.pattern, stage.shift) = (pattern, r2(pattern) - 0.5);
             for (pass, finds_edges) in passes {
@@ -132,7 +133,7 @@ impl Renderer {
                     ledger.enter(&mut self.tiles);
                 }
             }
-            if quality.average > 1 {
+            if patterns > 1 {
                 average(&mut self.tiles, &mut sums, pattern + 1);
             }
         }
