@@ -97,6 +97,7 @@ impl Renderer {
     /// Renders frame `n` of a scene as 0RGB rows, top to bottom, into `pixels`, which must hold
     /// `width * height` of them. `n` only seeds the grain.
     #[inline(never)]
+    #[cfg_attr(luc_size, optimize(size))]
     pub fn frame(
         &mut self,
         scene: &Scene,

@@ -29,6 +29,7 @@ fn expand(c: Vec3) -> Vec3 {
 }
 
 /// Takes more samples of the tile's edge pixels.
+#[cfg_attr(luc_size, optimize(size))]
 pub fn smooth_edges(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize), tile: &mut Tile) {
     let all = stage.quality.samples;
     let edge = stage.quality.edge_samples.max(all);

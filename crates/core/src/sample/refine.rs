@@ -66,6 +66,7 @@ struct Surroundings {
 }
 
 /// Samples the tile whose upper left pixel is `corner`, and fills its pixels.
+#[cfg_attr(luc_size, optimize(size))]
 pub fn refine(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize), tile: &mut Tile) {
     let width = TILE.min(stage.width as usize - corner.0);
     let height = TILE.min(stage.height as usize - corner.1);
@@ -164,6 +165,7 @@ fn refine_side(
 
 /// Traces the samples of `cells` that are still missing, in the cells' order.
 #[inline(never)]
+#[cfg_attr(luc_size, optimize(size))]
 fn sample(stage: &Stage, scratch: &mut Scratch, cells: &[Cell], corner: (usize, usize), shapes: u64) {
     let mut missing: Vec<Position> = Vec::new();
     let before = scratch.samples.0.len() * 8;
@@ -180,6 +182,7 @@ fn sample(stage: &Stage, scratch: &mut Scratch, cells: &[Cell], corner: (usize, 
 }
 
 /// Shapes that may cast a shadow on any surface between `samples`, per lamp.
+#[cfg_attr(luc_size, optimize(size))]
 fn shadow_casters(stage: &Stage, samples: &Samples) -> [u64; MAX_LAMPS] {
     let mut masks = [0; MAX_LAMPS];
     let mut bounds = Bounds::EMPTY;
@@ -250,6 +253,7 @@ impl Known<'_> {
     ///
     /// Written so that NaN refines.
     #[inline(never)]
+    #[cfg_attr(luc_size, optimize(size))]
     fn smooth(&self, stage: &Stage) -> bool {
         if !self.same_surface() {
             return false;
@@ -281,6 +285,7 @@ impl Known<'_> {
 impl Surroundings {
     /// Whether a shape, or the shadow of one, may lie between the samples of a cell.
     #[inline(never)]
+    #[cfg_attr(luc_size, optimize(size))]
     fn may_hide_something(
         &self,
         stage: &Stage,

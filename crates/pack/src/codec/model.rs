@@ -20,37 +20,37 @@ use super::x86::{Walker, fact, mix};
 ///
 /// Found by a random search.
 #[rustfmt::skip]
-static SEEN: [u8; 106] = [
+static SEEN: [u8; 102] = [
     32, 33, 34, 35, LAST + 36,
     32, LAST + 56,
     32, LAST + 33,
-    LAST + 58,
-    0, 1, 2, LAST + 48,
+    33, LAST + 34,
+    0, 1, LAST + 48,
     LAST + 49,
-    0, 1, 2, 10, 17, 18, 25, 26, LAST + 58,
-    1, 9, 36, 37, 48, LAST + 49,
+    0, 1, 2, 17, LAST + 18,
+    1, 9, 36, 37, LAST + 48,
     1, 48, LAST + 49,
     34, LAST + 35,
     9, 48, LAST + 49,
-    LAST + 56,
-    39, 56, LAST + 58,
+    21, LAST + 56,
+    39, LAST + 58,
     4, LAST + 48,
     0, 4, LAST + 48,
-    9, 13, 38, LAST + 57,
-    0, 2, 4, 8, 9, 10, LAST + 48,
+    16, LAST + 32,
+    0, 1, 8, 9, 10, LAST + 48,
     0, 1, 2, 9, LAST + 11,
-    1, 4, 6, 25, 38, 43, LAST + 49,
-    0, 48, LAST + 49,
-    LAST + 33,
-    0, 1, 2, 8, LAST + 49,
+    1, 6, 25, 38, 43, 48, LAST + 49,
+    48, LAST + 58,
+    32, LAST + 50,
+    0, 1, 8, 48, LAST + 49,
     1, 12, LAST + 48,
     9, 11, 17, 19, LAST + 32,
-    LAST + 36,
+    LAST + 4,
     6, 48, LAST + 49,
-    0, 1, 9, 17, 25, LAST + 48,
-    LAST + 48,
+    0, 1, 9, 16, 17, 25, LAST + 48,
+    5, 48, LAST + 49,
     1, 7, LAST + 48,
-    LAST + 32,
+    32, LAST + 48,
     9, 17, LAST + 48,
     LAST + 51,
 ];
@@ -175,7 +175,13 @@ impl Model {
         let facts = &self.walker.facts;
         let state = self.walker.part as usize | usize::from(self.walker.left.min(7)) << 3;
         let follower = facts[fact::OPCODE + fact::RECORD] & 1023 | u32::from(state == 0) << 10;
-        let mut sets = [state as u32 * 8, 0, facts[fact::OPCODE] & 1023, facts[fact::BYTES] & 255 | (state as u32 & 7) << 8, follower];
+        let mut sets = [
+            state as u32 * 8,
+            0,
+            facts[fact::OPCODE] & 1023,
+            facts[fact::BYTES + 2] & 255 | (state as u32 & 7) << 8,
+            follower,
+        ];
         let rate = RATE + EARLY_RATE / (1.0 + self.position as f32 * (1.0 / 4000.0));
         self.position += 1;
         let trust = &mut self.trust[state & 63];
