@@ -51,6 +51,7 @@ pub fn measure(subject: &Subject, size: (u32, u32), count: u64, threads: usize) 
     for n in subject.spread(count) {
         let scene = (subject.scene)(n);
         let mut time = |pool: &rayon::ThreadPool, quality| {
+            subject.lead(&mut renderer, n);
             let (begin, processor) = (Instant::now(), processor_ms());
             pool.install(|| renderer.frame(&scene, n, size, quality, &mut pixels));
             (begin.elapsed().as_secs_f64() * 1e3, processor_ms() - processor)

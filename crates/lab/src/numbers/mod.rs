@@ -150,6 +150,20 @@ fn time(kernel: &Kernel) -> [f64; 3] {
     ]
 }
 
+/// Names of the files of [`write_study`].
+pub const TABLE: &str = "numbers.csv";
+pub const PLOT: &str = "numbers.svg";
+
+/// Measures all formulas on so many cases, for a page of another study: a table and the plot in its folder.
+pub fn write_study(cases: u32, folder: &std::path::Path) -> Result<(), String> {
+    let rows: Vec<Row> = cases::all().map(|kernel| measure(kernel, cases)).collect();
+    for (name, text) in [(TABLE, report::csv(&rows)), (PLOT, plot::picture(&rows))] {
+        let path = folder.join(name);
+        std::fs::write(&path, text).map_err(|e| format!("{}: {e}", path.display()))?;
+    }
+    Ok(())
+}
+
 /// Runs the command with the arguments after `numbers`: how many cases, and where to write.
 pub fn run(args: &[String]) -> Result<(), String> {
     let cases = args.first().map_or(Ok(CASES), |n| n.parse()).map_err(|_| "CASES must be a whole number")?;

@@ -42,6 +42,20 @@ pub fn line(row: &Row) -> String {
     text
 }
 
+/// What f32 and f64 come to, comma separated: the worst error, and the time, of each form.
+pub fn csv(rows: &[Row]) -> String {
+    let mut text = String::from(
+        "formula,error in,textbook f32,engine,textbook f64,ns f32,ns engine,ns f64,engine's time over f64's\n",
+    );
+    for row in rows {
+        let [naive, ours, wide] = &row.columns;
+        let worst = [naive, ours, wide].map(|c| short(c.worst)).join(",");
+        let time = [naive.time, ours.time, wide.time, ours.time / wide.time].map(|t| format!("{t:.2}"));
+        writeln!(text, "{},{},{worst},{}", row.name, row.measure, time.join(",")).unwrap();
+    }
+    text
+}
+
 /// The whole page.
 pub fn page(rows: &[Row]) -> String {
     let mut text = String::from(HEAD);
