@@ -8,7 +8,7 @@
 //! - **Score** of a distance t: |t - ref| / max(unit, ulp(ref) / 2), where unit is how far ref moves
 //!   when the shape grows or shrinks by δ (to the middle of the chord, where it vanishes), or a
 //!   quarter of that for 4 δ, where more. A cone's slope and its tip are rounded apart, so the slope may
-//!   move against the tip: a ray along the side through the tip is within or without by their difference.
+//!   move alone, or against the tip: a ray along the side through the tip is within or without by their difference.
 //!
 //! `{:?}` of an f32 reads back to the same bits, so a printed shape and ray replay a failure.
 
@@ -159,14 +159,15 @@ impl Tally {
                 let skin = U * (reach + want.abs() * length);
                 let moved =
                     |side: f64, slope: f64| (bent(side, slope).map_or(middle, |e| e.t[k]) - want).abs();
-                let unit = |sign: f64| {
-                    let both = |by: f64| moved(by, sign * by).max(moved(-by, -sign * by));
+                let unit = |side: f64, slope: f64| {
+                    let both = |by: f64| moved(side * by, slope * by).max(moved(-side * by, -slope * by));
                     both(skin).max(0.25 * both(4.0 * skin))
                 };
                 let score = |unit: f64| (got - want).abs() / unit.max(half_ulp(want));
-                let mut unit_here = unit(1.0);
+                let mut unit_here = unit(1.0, 1.0);
                 if score(unit_here) > 1.0 {
-                    unit_here = unit_here.max(unit(-1.0));
+                    let against = (0..8).map(|i| unit(1.0 / f64::from(1 << i), -1.0));
+                    unit_here = against.fold(unit_here.max(unit(0.0, 1.0)), f64::max);
                 }
                 if unit_here == f64::INFINITY {
                     continue;
