@@ -12,11 +12,13 @@ mod effects;
 mod figures;
 mod font;
 mod lights;
+mod mesh;
 mod metric;
 mod numbers;
 mod plot;
 mod png_file;
 mod progress;
+mod render;
 mod scale;
 mod sheet;
 mod smoke;
@@ -32,7 +34,7 @@ use std::process::exit;
 /// A command: its name, what follows it, what it does, and the function.
 type Command = (&'static str, &'static str, &'static str, fn(&[String]) -> Result<(), String>);
 
-const COMMANDS: [Command; 12] = [
+const COMMANDS: [Command; 14] = [
     (
         "accuracy",
         "[--quick]",
@@ -54,6 +56,8 @@ const COMMANDS: [Command; 12] = [
     ("lights", "", "culled against naive small lights", lights::run),
     ("smoke", "", "what the motion, the light and the sight of smoke cost", smoke::run),
     ("numbers", "[CASES]", "formulas against the truth, as a page and a plot in docs", numbers::run),
+    ("render", "FILE.obj [-o FILE.png] [--turn N]", "a model of triangles, in a studio", render::run),
+    ("mesh", "NAME [-o FILE.obj]", "a mesh of the show, or a knot, as a model", mesh::run),
     ("values", "[TABLE]", "frames against the table of their one value", values::run),
 ];
 

@@ -1,0 +1,109 @@
+//! `lab render` and `lab mesh` from end to end.
+
+use std::fs::{File, create_dir, write};
+use std::path::Path;
+use std::process::{Command, Output};
+
+const PYRAMID: &str = "mtllib p.mtl\nv 0 0 0\nv 2 0 0\nv 2 0 2\nv 0 0 2\nv 1 2 1\nusemtl sand\nf 1 2 3 4\n\
+    f 2 1 5\nf 3 2 5\nf 4 3 5\nf 1 4 5\n";
+
+fn lab(folder: &Path, args: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_luc-lab"))
+        .args(args)
+        .current_dir(folder)
+        .output()
+        .expect("the lab starts")
+}
+
+/// Draws a file and gives its red, green and blue bytes.
+fn drawn(folder: &Path, args: &[&str]) -> Vec<u8> {
+    let common = ["--size", "64x48", "--quality", "low", "-o", "out.png"];
+    let done = lab(folder, &[&["render"], args, &common].concat());
+    assert!(done.status.success(), "{args:?}: {}", String::from_utf8_lossy(&done.stderr));
+    let mut reader = png::Decoder::new(std::io::BufReader::new(File::open(folder.join("out.png")).unwrap()))
+        .read_info()
+        .unwrap();
+    assert_eq!((reader.info().width, reader.info().height), (64, 48));
+    let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+    reader.next_frame(&mut bytes).unwrap();
+    bytes
+}
+
+#[test]
+fn a_model_is_drawn_in_the_colours_of_its_materials() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    write(folder.join("p.obj"), PYRAMID).unwrap();
+    let middle = |bytes: &[u8]| {
+        let at = 3 * (28 * 64 + 32);
+        [0, 1, 2].map(|k| i32::from(bytes[at + k]))
+    };
+    write(folder.join("p.mtl"), "newmtl sand\nKd 0.9 0.1 0.05\nKs 0 0 0\n").unwrap();
+    let [r, g, b] = middle(&drawn(folder, &["p.obj"]));
+    assert!(r > 2 * g && r > 2 * b, "red: {r} {g} {b}");
+    write(folder.join("p.mtl"), "newmtl sand\nKd 0.05 0.1 0.9\nKs 0 0 0\n").unwrap();
+    let blue = drawn(folder, &["p.obj"]);
+    let [r, _, b] = middle(&blue);
+    assert!(b > 2 * r, "blue: {r} {b}");
+    assert_eq!(drawn(folder, &["p.obj"]), blue, "the same picture again");
+    for args in [
+        &["p.obj", "--turn", "75"][..],
+        &["p.obj", "--frame", "60"],
+        &["p.obj", "--up", "z"],
+        &["p.obj", "--no-floor"],
+        &["p.obj", "--height", "-30"],
+    ] {
+        assert!(drawn(folder, args) != blue, "{args:?} changes the picture");
+    }
+    assert_eq!(drawn(folder, &["p.obj", "--frame", "0"]), drawn(folder, &["p.obj", "--frame", "240"]));
+}
+
+#[test]
+fn meshes_that_are_written_are_read_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    for (name, args) in [("knot", &["--triangles", "600"][..]), ("facets", &["--frame", "120"])] {
+        let file = format!("a/{name}.obj");
+        let done = lab(folder, &[&["mesh", name, "-o", &file], args].concat());
+        assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+        let bytes = drawn(folder, &[&file]);
+        let [darkest, brightest] = [bytes.iter().min(), bytes.iter().max()].map(|b| *b.unwrap());
+        assert!(brightest - darkest > 60, "{name}: from {darkest} to {brightest}");
+    }
+}
+
+#[test]
+fn bad_input_is_one_clear_line_and_code_2() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    write(folder.join("p.obj"), PYRAMID).unwrap();
+    write(folder.join("p.mtl"), "newmtl sand\nKd 1 0\n").unwrap();
+    write(folder.join("empty.obj"), "").unwrap();
+    write(folder.join("bytes.obj"), [0, 255, 254, 10, 200, 13, 10, 7]).unwrap();
+    write(folder.join("broken.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n").unwrap();
+    create_dir(folder.join("folder.obj")).unwrap();
+    for (args, words) in [
+        (&["render"][..], "which file?"),
+        (&["render", "none.obj"], "none.obj: No such file"),
+        (&["render", "folder.obj"], "folder.obj: "),
+        (&["render", "empty.obj"], "empty.obj: there are no faces in it"),
+        (&["render", "bytes.obj"], "no faces"),
+        (&["render", "broken.obj"], "broken.obj: line 4: there is no position 9; 3 stand before it"),
+        (&["render", "p.obj"], "p.mtl: line 2: 2 numbers where 3 are needed"),
+        (&["render", "p.obj", "p.obj"], "unexpected argument"),
+        (&["render", "p.obj", "--size", "0x9"], "such as 1280x720"),
+        (&["render", "p.obj", "--quality", "best"], "a quality is one of"),
+        (&["render", "p.obj", "--turn", "far"], "an angle in degrees, not 'far'"),
+        (&["render", "p.obj", "--normals", "odd"], "file, flat or smooth"),
+        (&["render", "p.obj", "--up", "x"], "up is y or z"),
+        (&["mesh"], "which mesh? one of knot, facets"),
+        (&["mesh", "silver"], "a mesh is one of knot, facets"),
+        (&["mesh", "luc"], "not 'luc'"),
+    ] {
+        let done = lab(folder, args);
+        let said = String::from_utf8_lossy(&done.stderr);
+        assert_eq!(done.status.code(), Some(2), "{args:?}: {said}");
+        assert!(said.contains(words), "{args:?}: {said}");
+        assert_eq!(said.trim_end().lines().count(), 1, "{args:?}: {said}");
+    }
+}
