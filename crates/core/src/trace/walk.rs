@@ -8,7 +8,7 @@
 use crate::math::lanes::{Bound, F, V3, splat};
 
 /// Directions nearer to 0 are taken for this, which is too small to be seen, and so never give 0/0.
-const LEVEL: f32 = 1e-30;
+pub(super) const LEVEL: f32 = 1e-30;
 
 /// Rays in units of cells.
 pub struct Walk {
