@@ -358,7 +358,7 @@ fn rays_along_an_end() {
             let rays = packet(|| {
                 let any = random.direction();
                 let d = (any - axis * any.dot(axis)).normalize_or(axis.any_orthogonal_vector());
-                let side = d.cross(axis) * (h * k * random.range(-0.9, 0.9));
+                let side = crate::math::cross(d, axis) * (h * k * random.range(-0.9, 0.9));
                 let end = base + axis * if random.one_in(4) { 0.0 } else { h };
                 (end + side - d * (h * k * random.signed(-6, 6)), d + axis * random.signed(-28, -22))
             });
