@@ -231,7 +231,7 @@ mod tests {
             }],
             phases: vec![Phases {
                 part: "mirror".into(),
-                spent: vec![1.0; Phase::ALL.len()],
+                spent: vec![0.75; Phase::ALL.len()],
                 processor: 6.5,
                 one: 7.0,
                 all: 4.0,
