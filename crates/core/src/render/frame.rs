@@ -106,11 +106,12 @@ impl Renderer {
         quality: &Quality,
         pixels: &mut [u32],
     ) {
-        self.counters = Counters::default();
+        self.counters = Counters::start(&quality.study, Phase::SmokeStep);
         let volume = scene.smoke.as_ref().filter(|_| features::SMOKE).map(|smoke| {
             self.simulation.run(smoke, &mut self.counters);
             Volume::new(smoke, &self.simulation, &mut self.smoke, &mut self.counters)
         });
+        self.counters.watch.stop();
         let mut stage = Stage::new(scene, quality, width, height);
         stage.volume = volume.as_ref();
         let across = (width as usize).div_ceil(TILE);
