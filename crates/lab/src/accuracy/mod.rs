@@ -109,7 +109,7 @@ pub fn run(args: &[String]) -> Result<(), String> {
     let mut subjects = parts.clone();
     subjects.push(Subject::fireflies());
     let effort = if options.quick {
-        Effort { size: (96, 54), passes: 1, enough: 0.0, samples: 15, light_samples: 3, flicker: 3 }
+        Effort { size: (96, 54), passes: 1, enough: 0.0, samples: 31, light_samples: 3, flicker: 3 }
     } else {
         Effort { size: (240, 135), passes: 5, enough: 200.0, samples: 63, light_samples: 15, flicker: 30 }
     };

@@ -219,7 +219,7 @@ fn choice(data: &Data) -> String {
         "<table><tr><th>preset</th><th>ms</th><th>FLIP</th><th>least ms at this error</th><th>by</th>\
          <th>least FLIP in this time</th><th>by</th></tr>\n",
     );
-    for a in all.iter().filter(|a| a.knob == "preset") {
+    for a in all.iter().filter(|a| a.knob == "preset" && place(a).1.is_finite()) {
         let (ms, flip) = place(a);
         let name = |a: &Averaged| {
             if a.knob == "preset" { a.value.clone() } else { format!("{} {}", a.knob, a.value) }
