@@ -139,16 +139,21 @@ fn a_missing_display_is_a_sentence_with_a_way_out() {
     refused("DISPLAY empty", &empty, sentence);
 }
 
+/// Whether the small build is tested, which lacks some options.
+fn is_packed() -> bool {
+    std::env::var_os("LUC_BIN").is_some()
+}
+
 #[test]
 fn help_and_version_are_told_on_standard_output() {
     let dir = tempdir().unwrap();
     let help = run(dir.path(), &["--frame", "3", "--help"]);
     succeeded("--help", &help);
     let text = String::from_utf8(help.stdout).unwrap();
-    let flags =
-        "--frame -o --size --quality --average --scene --from --once --fullscreen --threads --help --version";
+    let flags = "--frame -o --size --quality --scene --from --once --fullscreen --threads --help --version";
     let of_sound = if support::sound::has_sound() { " --mute --wav" } else { "" };
-    for flag in [flags, of_sound].concat().split(' ') {
+    let ordinary = if is_packed() { "" } else { " --average --view" };
+    for flag in [flags, of_sound, ordinary].concat().split(' ') {
         assert!(text.contains(flag), "--help does not name {flag}:\n{text}");
     }
     let version = run(dir.path(), &["--version"]);
@@ -223,6 +228,11 @@ fn the_number_of_threads_changes_no_byte() {
 #[test]
 fn a_still_averages_sample_patterns_on_any_number_of_threads() {
     let dir = tempdir().unwrap();
+    // The packed file has none, and says so.
+    if is_packed() {
+        let output = run(dir.path(), &["--average", "4", "--frame", "60", "-o", "-"]);
+        return refused("--average", &output, "--average is left out of this small build");
+    }
     let with = |patterns, threads| {
         let args =
             ["--frame", "60", "--size", "96x54", "-o", "-", "--average", patterns, "--threads", threads];
@@ -242,7 +252,7 @@ fn a_still_averages_sample_patterns_on_any_number_of_threads() {
 fn every_view_writes_a_picture_of_its_own() {
     let dir = tempdir().unwrap();
     // The packed file has none, and says so.
-    if std::env::var_os("LUC_BIN").is_some() {
+    if is_packed() {
         let output = run(dir.path(), &["--view", "normal", "--frame", "60", "-o", "-"]);
         return refused("--view", &output, "--view is left out of this small build");
     }

@@ -14,7 +14,7 @@ pub const LARGEST: (u32, u32) = (7680, 4320);
 const MOST_THREADS: u64 = 256;
 const MOST_PATTERNS: u64 = 1024;
 /// What the size build says, which draws light only.
-const NO_VIEWS: &[u8] = b"--view is left out of this small build; the ordinary one has it";
+const LEFT_OUT: &[u8] = b" is left out of this small build; the ordinary one has it";
 
 /// What the user wants.
 #[derive(Debug, PartialEq)]
@@ -116,8 +116,8 @@ const FLAGS: &[(&str, Flag, Takes, For)] = &[
     ("--size", Flag::Size, Takes::Size, For::Pictures),
     ("--quality", Flag::Quality, Takes::Name(quality), For::Pictures),
     ("--scene", Flag::Scene, Takes::Name(scene), For::Anything),
-    ("--average", Flag::Average, Takes::Number(1, MOST_PATTERNS), For::Frames),
-    ("--view", Flag::View, if cfg!(luc_size) { Takes::Nothing } else { Takes::Name(view) }, For::Frames),
+    ("--average", Flag::Average, ordinary(Takes::Number(1, MOST_PATTERNS)), For::Frames),
+    ("--view", Flag::View, ordinary(Takes::Name(view)), For::Frames),
     ("-o", Flag::Output, Takes::File, For::Frames),
     ("--once", Flag::Once, Takes::Nothing, For::Playing),
     ("--fullscreen", Flag::Fullscreen, Takes::Nothing, For::Playing),
@@ -126,6 +126,11 @@ const FLAGS: &[(&str, Flag, Takes, For)] = &[
     #[cfg(feature = "sound")]
     ("--wav", Flag::Wav, Takes::Sound, For::Anything),
 ];
+
+/// What a flag takes that only the ordinary build has.
+const fn ordinary(takes: Takes) -> Takes {
+    if cfg!(luc_size) { Takes::Nothing } else { takes }
+}
 
 /// Reads the arguments that follow the program's name.
 pub fn parse<'a>(args: &[&'a OsStr]) -> Result<Request<'a>, Text> {
@@ -174,8 +179,8 @@ pub fn parse<'a>(args: &[&'a OsStr]) -> Result<Request<'a>, Text> {
             Flag::Size => options.size = (n as u32, height as u32),
             Flag::Quality => options.quality = Some(n as usize),
             Flag::Scene => options.scene = Some(n as usize),
+            Flag::Average | Flag::View if cfg!(luc_size) => return Err(join(&[name, LEFT_OUT])),
             Flag::Average => options.average = n as u32,
-            Flag::View if cfg!(luc_size) => return Err(join(&[NO_VIEWS])),
             Flag::View => options.view = Some(n as usize),
             Flag::Output => options.output = typed.copied(),
             Flag::Once => options.once = true,
@@ -194,7 +199,7 @@ pub fn parse<'a>(args: &[&'a OsStr]) -> Result<Request<'a>, Text> {
     if options.frame.is_none() && !still.is_empty() {
         return Err(join(&[still, b" needs --frame N, the frame to write"]));
     }
-    if options.view.is_some() && options.average > 1 {
+    if cfg!(not(luc_size)) && options.view.is_some() && options.average > 1 {
         return Err(join(&[b"--average is for light; leave it or --view out"]));
     }
     if options.frame.is_some() && !windowed.is_empty() {
@@ -268,22 +273,22 @@ fn one_of(names: Names) -> Text {
     out
 }
 
-/// What `--help` says of views, where there are any.
-const VIEW_HELP: &[u8] = if cfg!(luc_size) {
+/// What `--help` says of what only the ordinary build has.
+const ORDINARY_HELP: &[u8] = if cfg!(luc_size) {
     b""
 } else {
-    b"  --view NAME      draw a frame's normal, distance (white at 50 units), albedo,
+    b"
+  --average K      a frame as the mean of K sample patterns, 1 to 1024 (1)
+  --view NAME      draw a frame's normal, distance (white at 50 units), albedo,
                    sampling, lights (blue: one small light, white: 64) or
-                   steps (of its rays, white at 128) instead
-"
+                   steps (of its rays, white at 128) instead"
 };
 
 /// What `--help` says of sound, where there is any.
 const SOUND_HELP: &[u8] = if cfg!(feature = "sound") {
-    b"  --mute           play without sound
-  --wav FILE       write the sound, of --scene or all, and open no window;
-                   .wav, or - for standard output
-"
+    b"
+  --mute           play without sound
+  --wav FILE       write the sound: .wav, or - for standard output"
 } else {
     b""
 };
@@ -292,32 +297,27 @@ const SOUND_HELP: &[u8] = if cfg!(feature = "sound") {
 pub fn help() -> Text {
     join(&[
         "\
-Lúč, a ray-traced intro. Esc or closing the window ends it.
+Lúč, a ray-traced intro. Esc ends it.
 
   luc [options]                      play
-  luc --frame N [-o FILE] [options]  write one frame, open no window
+  luc --frame N [-o FILE] [options]  write one frame
 
   -o FILE          .png, .ppm, or - for PPM on standard output
-                   (without it: frame-NNNNNN.png)
-  --size WxH       picture size, 1x1 to 7680x4320 (1280x720)
+  --size WxH       1x1 to 7680x4320 (1280x720)
   --quality NAME   "
             .as_bytes(),
         &one_of(quality),
         b"
-                   (a frame: high; playing: whatever holds 60 frames a second)
-  --average K      a frame as the mean of K sample patterns, 1 to 1024 (1)
-  --scene NAME     only this part, N counts from its start;
-                   ",
+  --scene NAME     only this part: ",
         &one_of(scene),
+        ORDINARY_HELP,
         b"
-",
-        VIEW_HELP,
-        b"  --from N         start playing at frame N, 60 a second
+  --from N         start at frame N, 60 a second
   --once           end instead of looping
-  --fullscreen     cover the screen
-",
+  --fullscreen     cover the screen",
         SOUND_HELP,
-        b"  --threads N      render on N threads, 1 to 256 (all cores)
+        b"
+  --threads N      1 to 256 (all cores)
   --help           this text
   --version        name and version
 ",

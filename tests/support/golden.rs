@@ -90,7 +90,7 @@ pub const FINGERPRINTS: [Frame; 36] = [
 
 /// Whether a part is in the 64 kB file too.
 pub fn in_every_build(part: &str) -> bool {
-    part == "smoke" || !show::OPTIONAL.contains(&part)
+    part != "swarm"
 }
 
 /// Part and local frame of those whose value is kept for all builds, in `values.txt`.

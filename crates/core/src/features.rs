@@ -46,6 +46,10 @@ pub const BRICK: bool = cfg!(feature = "brick");
 /// See [`crate::scene::Pattern::Scratches`].
 pub const SCRATCHES: bool = cfg!(feature = "scratches");
 
+/// Frames as the mean of several sample patterns.
+pub const AVERAGE: bool = cfg!(feature = "average");
+/// PNG files by codes; without it they are stored, three bytes a pixel.
+pub const DEFLATE: bool = cfg!(feature = "deflate");
 /// Frames that are sampled in two ways.
 pub const SPLIT: bool = cfg!(feature = "split");
 /// The chain of effects, with at least one of them.

@@ -28,6 +28,8 @@
 //! Renderer::default().frame(&scene, 0, (32, 18), &Quality::named("high").unwrap(), &mut pixels);
 //! assert!(pixels[9 * 32 + 16] >> 16 > 100, "the ball in the middle is red");
 //! ```
+// What is done once a frame, or seldom, is compiled smaller still in the size build.
+#![cfg_attr(luc_size, feature(optimize_attribute))]
 #![warn(missing_docs)]
 #![forbid(unsafe_code)]
 

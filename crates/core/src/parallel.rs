@@ -8,19 +8,19 @@
 type Task<'a> = Box<dyn FnOnce() + Send + 'a>;
 
 /// Calls `work` with each item and its number on the current rayon pool; returns when all is done.
-pub fn each<T: Send>(items: impl Iterator<Item = T>, work: impl Fn(usize, T) + Sync) {
+pub fn each<T: Send>(items: impl Iterator<Item = T> + Send, work: impl Fn(usize, T) + Sync) {
     let work = &work;
-    let mut tasks: Vec<Task> = Vec::new();
-    for (i, item) in items.enumerate() {
-        tasks.push(Box::new(move || work(i, item)));
-    }
-    start(tasks);
+    let mut items = items.enumerate();
+    start(&mut || {
+        let (i, item) = items.next()?;
+        Some(Box::new(move || work(i, item)))
+    });
 }
 
 #[inline(never)]
-fn start(tasks: Vec<Task>) {
+fn start<'a>(next: &mut (dyn FnMut() -> Option<Task<'a>> + Send)) {
     rayon::scope(|scope| {
-        for task in tasks {
+        while let Some(task) = next() {
             scope.spawn(|_| task());
         }
     });

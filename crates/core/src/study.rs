@@ -9,6 +9,10 @@
 pub enum Phase {
     /// Deciding where to trace; lists and culling.
     Sampling,
+    /// A step of smoke, and making it ready for rays.
+    SmokeStep,
+    /// Rays through smoke.
+    SmokeRender,
     /// Finding hits and shadows.
     Tracing,
     /// Surfaces and light at the samples.
@@ -23,8 +27,10 @@ pub enum Phase {
 
 impl Phase {
     /// All phases in order, with their names.
-    pub const ALL: [(Phase, &str); 6] = [
+    pub const ALL: [(Phase, &str); 8] = [
         (Phase::Sampling, "sampling"),
+        (Phase::SmokeStep, "smoke step"),
+        (Phase::SmokeRender, "smoke render"),
         (Phase::Tracing, "tracing"),
         (Phase::Shading, "shading"),
         (Phase::Filling, "filling"),

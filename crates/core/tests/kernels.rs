@@ -4,6 +4,7 @@
 //! A failing case is shrunk, printed, and kept in `kernels.regressions`, whose cases are tried first.
 
 mod kernels {
+    mod cells;
     pub mod draw;
     mod formulas;
     mod odd;

@@ -12,9 +12,11 @@ mod effects;
 mod figures;
 mod font;
 mod lights;
+mod memory;
 mod mesh;
 mod metric;
 mod numbers;
+mod peers;
 mod plot;
 mod png_file;
 mod progress;
@@ -34,7 +36,7 @@ use std::process::exit;
 /// A command: its name, what follows it, what it does, and the function.
 type Command = (&'static str, &'static str, &'static str, fn(&[String]) -> Result<(), String>);
 
-const COMMANDS: [Command; 14] = [
+const COMMANDS: [Command; 16] = [
     (
         "accuracy",
         "[--quick]",
@@ -53,6 +55,8 @@ const COMMANDS: [Command; 14] = [
     ("capture", "[-o FILE] [--shard I/N]", "frames as y4m, to a file or standard output", capture::run),
     ("stats", "[FRAME] [QUALITY] [WxH]", "counters, time and error of one frame", stats::run),
     ("sound", "[FILE.wav]...", "loudness, peaks and spectrum of the tune, beside those of files", sound::run),
+    ("peers", "[--quick]", "our tracer beside those of other crates, in one run", peers::run),
+    ("memory", "PROGRAM [WxH]", "most memory that a player holds, by part", memory::run),
     ("lights", "", "culled against naive small lights", lights::run),
     ("smoke", "", "what the motion, the light and the sight of smoke cost", smoke::run),
     ("numbers", "[CASES]", "formulas against the truth, as a page and a plot in docs", numbers::run),

@@ -2,6 +2,8 @@
 
 use crate::swarm;
 use luc::show;
+use luc_core::quality::Quality;
+use luc_core::render::Renderer;
 use luc_core::scene::Scene;
 
 /// A scene over time.
@@ -37,6 +39,16 @@ impl Subject {
         scene.effects.clear();
         scene.grade.grain = 0.0;
         scene
+    }
+
+    /// Brings a renderer to where it is before frame `n` of a playing show: smoke has a step to go.
+    pub fn lead(&self, renderer: &mut Renderer, n: u64) {
+        let scene = (self.scene)(n.saturating_sub(2));
+        if scene.smoke.is_some() {
+            let counters = renderer.counters;
+            renderer.frame(&scene, n, (8, 8), &Quality::PRESETS[0].1, &mut [0; 64]);
+            renderer.counters = counters;
+        }
     }
 
     /// `count` frames spread evenly over it.

@@ -33,6 +33,7 @@ impl Tree {
     /// A tree over the items with these boxes, at most `leaf` (up to [`LEAF`]) in a leaf. Items
     /// whose box isn't finite are left out.
     #[inline(never)]
+    #[cfg_attr(luc_size, optimize(size))]
     pub fn build(boxes: &[Bounds], leaf: usize) -> Tree {
         let mut order: Vec<u32> =
             (0..boxes.len() as u32).filter(|&i| boxes[i as usize].is_finite()).collect();
@@ -96,6 +97,7 @@ impl Builder<'_> {
 
     /// Cuts items into up to eight parts, in order.
     #[inline(never)]
+    #[cfg_attr(luc_size, optimize(size))]
     fn parts(&self, order: &mut [u32], depth: usize) -> ([Part; LANES], usize) {
         let mut parts = [Part { from: 0, to: order.len(), bounds: self.around(order) }; LANES];
         let mut count = 1;
@@ -122,6 +124,7 @@ impl Builder<'_> {
     /// Orders items so that those before the index returned lie on one side; there are some on
     /// either side.
     #[inline(never)]
+    #[cfg_attr(luc_size, optimize(size))]
     fn cut(&self, order: &mut [u32], depth: usize) -> usize {
         let half = order.len() / 2;
         // Twice the middles of the boxes.

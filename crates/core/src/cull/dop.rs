@@ -24,6 +24,7 @@ const NEAR: f32 = 1e-3;
 
 /// Two unit vectors across a third and each other.
 #[inline(never)]
+#[cfg_attr(luc_size, optimize(size))]
 fn across(axis: Vec3) -> (Vec3, Vec3) {
     axis.any_orthonormal_pair()
 }
@@ -101,6 +102,7 @@ impl Dop {
         ..Dop::EVERYWHERE
     };
 
+    #[cfg_attr(luc_size, optimize(size))]
     fn along(direction: Vec2) -> Dop {
         let u = direction.normalize_or(Vec2::X);
         let (cos, sin) = (F::new(COS), F::new(SIN));
@@ -109,6 +111,7 @@ impl Dop {
     }
 
     /// The same with two axes turned to be normal to these edges.
+    #[cfg_attr(luc_size, optimize(size))]
     fn with_edges(direction: Vec2, edges: [Vec2; 2]) -> Dop {
         let mut dop = Dop::along(direction);
         for (lane, edge) in [3, 5].into_iter().zip(edges) {
@@ -120,6 +123,7 @@ impl Dop {
     }
 
     /// Bound of the ball at `c`, view coordinates.
+    #[cfg_attr(luc_size, optimize(size))]
     pub fn ball(c: Vec3, r: f32) -> Dop {
         if c.z + r < 0.0 {
             return Dop::NOWHERE;
@@ -140,6 +144,7 @@ impl Dop {
 
     /// Bounds the convex hull of `count` points (view coordinates) along the axes given.
     #[inline(never)]
+    #[cfg_attr(luc_size, optimize(size))]
     fn hull(mut dop: Dop, count: usize, point: &dyn Fn(usize) -> Vec3) -> Dop {
         for p in (0..count).map(point) {
             if p.z < NEAR {
@@ -162,6 +167,7 @@ impl Dop {
 
     /// Bound of a box with these half sides along `axes` (columns, world).
     #[inline(never)]
+    #[cfg_attr(luc_size, optimize(size))]
     pub fn cuboid(view: &View, centre: Vec3, axes: Mat3, half: Vec3) -> Dop {
         let sign = |i: usize, bit: usize| if i & bit == 0 { -1.0 } else { 1.0 };
         Dop::hull(Dop::along(Vec2::X), 8, &|i| {
@@ -177,6 +183,7 @@ impl Dop {
 
     /// Bound of the hull of two discs across `axis` (world) of radii `r` around `a` and `b`.
     #[inline(never)]
+    #[cfg_attr(luc_size, optimize(size))]
     fn discs(view: &View, axis: Vec3, (a, ra): (Vec3, f32), (b, rb): (Vec3, f32)) -> Dop {
         let (u, v) = across(axis);
         // A regular polygon of sixteen corners around a circle: 1 / cos(pi/16).
@@ -246,6 +253,7 @@ impl Dop {
 
     /// Bound of all that a beam lights up, as seen in `view` by rays whose footprints have the
     /// width `pixel` at one unit.
+    #[cfg_attr(luc_size, optimize(size))]
     pub fn of_beam(view: &View, beam: &Beam, pixel: f32) -> Dop {
         let far = (beam.from - view.origin).length().max((beam.to - view.origin).length());
         let blur = 0.5 * pixel * far;
@@ -260,6 +268,7 @@ impl Dop {
     }
 
     /// Bound of a shape as seen in `view`.
+    #[cfg_attr(luc_size, optimize(size))]
     pub fn of(view: &View, shape: Shape) -> Dop {
         match shape {
             Shape::Sphere(s) => Dop::ball(view.local(s.centre), s.radius),
@@ -322,6 +331,7 @@ impl Dop {
 }
 
 /// Bounds of all shapes of a scene in a view.
+#[cfg_attr(luc_size, optimize(size))]
 pub fn dops(scene: &Scene, view: &View) -> Vec<Dop> {
     (0..scene.shape_count()).map(|i| Dop::of(view, scene.shape(i))).collect()
 }

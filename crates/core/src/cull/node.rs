@@ -22,6 +22,7 @@ pub struct FieldNode {
 }
 
 /// The bodies of a scene's fields.
+#[cfg_attr(luc_size, optimize(size))]
 pub fn field_nodes(scene: &Scene, view: &View) -> Vec<FieldNode> {
     let mut nodes = Vec::new();
     let first = scene.shape_count() - scene.fields.len();

@@ -18,6 +18,7 @@ pub struct Shaft {
 
 /// A point well inside a shape to turn the lamp's view to; of an infinite bar the nearest, so that
 /// its bound holds all around.
+#[cfg_attr(luc_size, optimize(size))]
 fn middle(shape: Shape, lamp: Vec3) -> Vec3 {
     match shape {
         Shape::Sphere(s) => s.centre,
@@ -36,6 +37,7 @@ fn middle(shape: Shape, lamp: Vec3) -> Vec3 {
 }
 
 /// The shafts of each lamp to each shape, lamp after lamp.
+#[cfg_attr(luc_size, optimize(size))]
 pub fn shafts(scene: &Scene, lamps: &[Lamp]) -> Vec<Shaft> {
     let count = scene.shape_count();
     (0..lamps.len() * count)
@@ -136,6 +138,7 @@ impl Shaft {
 /// `own` is the shape that all the points lie on, if it is one: a plane, triangle or ball doesn't
 /// shadow the side of itself that faces the lamp, and points that face away are not asked about.
 #[inline(never)]
+#[cfg_attr(luc_size, optimize(size))]
 pub fn occluders(scene: &Scene, shafts: &[Shaft], among: u64, own: Option<usize>, region: &Region) -> u64 {
     let mut mask = 0;
     for (i, shaft) in shafts.iter().enumerate() {

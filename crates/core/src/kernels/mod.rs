@@ -9,7 +9,8 @@
 //! |---|---|---|
 //! | [`sphere`], [`plane`], [`cylinder`], [`capped_cylinder`], [`cone`], [`capped_cone`], [`triangle`] | the same names in [`trace`](crate::trace) | with each |
 //! | [`slab`] | [`Rays8::in_box`] | Ize, JCGT 2(2), 2013 |
-//! | [`quadratic`] | | Kahan |
+//! | [`walk`] | [`Walk`], [`voxels`] | Amanatides and Woo 1987 |
+//! | [`quadratic`], [`difference_of_products`] | the same in [`lanes`] | Kahan |
 //! | [`schlick`], [`refract`] | [`shade::schlick`], [`shade::refract`] | Schlick 1994 |
 //! | [`fresnel`], [`cos_refracted`], [`is_total`] | [`shade::dielectric`] | Fresnel 1823 |
 //! | [`ggx`], [`ggx_of_cosine`], [`smith_g1`], [`smith_g2`] | [`shade::distribution`], [`shade::masking`], [`shade::visibility`] | Walter et al. 2007, Heitz 2014 |
@@ -45,6 +46,9 @@
 //! ```
 //!
 //! [`Rays8::in_box`]: crate::trace::Rays8::in_box
+//! [`Walk`]: crate::trace::Walk
+//! [`voxels`]: crate::trace::voxels()
+//! [`lanes`]: crate::math::lanes
 //! [`shade::schlick`]: crate::shade::schlick
 //! [`shade::refract`]: crate::shade::refract
 //! [`shade::dielectric`]: crate::shade::dielectric
@@ -61,6 +65,7 @@
 //! [`trace::folded`]: crate::trace::folded
 //! [`trace::repeated`]: crate::trace::repeated
 
+mod cells;
 mod directions;
 mod facets;
 mod fields;
@@ -70,6 +75,7 @@ mod shapes;
 
 pub use crate::math::quadratic::roots as quadratic;
 pub use crate::math::scalar;
+pub use cells::{Visit, walk};
 pub use directions::{basis, cosine_weighted};
 pub use facets::{beckmann, beckmann_of_cosine, ggx, ggx_of_cosine, smith_g1, smith_g2};
 pub use fields::{
@@ -81,7 +87,12 @@ pub use shapes::{
     Crossing, Ray, TriangleHit, capped_cone, capped_cylinder, cone, cylinder, plane, slab, sphere, triangle,
 };
 
-use crate::math::lanes::F;
+use crate::math::lanes::{self, F, splat};
+
+/// a b - c d within 0.5001 ulp: see [`lanes::difference_of_products`].
+pub fn difference_of_products(a: f32, b: f32, c: f32, d: f32) -> f32 {
+    first(lanes::difference_of_products(splat(a), splat(b), splat(c), splat(d)))
+}
 
 /// The first lane.
 fn first(lanes: F) -> f32 {

@@ -46,7 +46,7 @@ pub struct TriangleHit {
 
 impl Ray {
     /// The ray in all lanes.
-    fn packet(&self) -> Rays8 {
+    pub(super) fn packet(&self) -> Rays8 {
         Rays8 { origin: V3::splat(self.origin), direction: V3::splat(self.direction) }
     }
 }

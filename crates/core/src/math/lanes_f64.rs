@@ -4,7 +4,7 @@
 //! value wherever the formula cancels less than 2²⁸-fold. [`F`] in and out, so that a lane still
 //! depends on itself alone.
 
-use super::lanes::{Bound, F};
+use super::lanes::{Bound, F, V3};
 
 /// Four f64.
 pub type D = wide::f64x4;
@@ -31,6 +31,14 @@ impl Bound for D {
         } else {
             self.simd_gt(least).select(self, least)
         }
+    }
+}
+
+impl V3 {
+    /// Scalar product of exact products, rounded to f64 and then to f32: right also for nearly upright vectors.
+    #[inline(always)]
+    pub fn dot_exact(self, b: V3) -> F {
+        in_f64([self.x, self.y, self.z, b.x, b.y, b.z], |[x, y, z, bx, by, bz]| x * bx + y * by + z * bz)
     }
 }
 

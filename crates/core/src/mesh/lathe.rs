@@ -8,6 +8,7 @@ use std::f32::consts::TAU;
 /// radius of 0 is a tip, or the middle of a cap. It is turned about the axis by `turn` (1 is once
 /// around).
 #[inline(never)]
+#[cfg_attr(luc_size, optimize(size))]
 pub fn lathe(out: &mut Vec<[Vec3; 3]>, rings: &[(Vec3, f32)], sides: usize, turn: f32) {
     let axis = rings[rings.len() - 1].0 - rings[0].0;
     let (u, v) = axis.normalize_or(Vec3::Y).any_orthonormal_pair();

@@ -55,6 +55,7 @@ fn times(m: &Mat3, v: V3) -> V3 {
 
 impl Instance {
     /// The mesh placed by an affine map that can be inverted.
+    #[cfg_attr(luc_size, optimize(size))]
     pub fn new(mesh: &Arc<Mesh>, world_from_mesh: Mat3, origin: Vec3, material: usize) -> Self {
         let mesh_from_world = world_from_mesh.inverse();
         Self { mesh: mesh.clone(), origin, world_from_mesh, mesh_from_world, material, first: 0 }
@@ -104,6 +105,7 @@ impl Instance {
     /// The facets that rays meet, by their indices in the mesh; lanes with another index hold
     /// nonsense. The point is a mean of corners, so it lies on the facet whatever the distance.
     #[inline(never)]
+    #[cfg_attr(luc_size, optimize(size))]
     pub fn facets(&self, rays: &Rays8, index: F) -> Facets {
         let last = self.mesh.triangles.len() - 1;
         let index = index.to_array().map(|i| (i as usize).min(last));

@@ -1,4 +1,5 @@
-//! A zlib stream in the fewest instructions: one deflate block with the fixed codes, greedy matches.
+//! A zlib stream in the fewest instructions: one deflate block with the fixed codes, greedy matches; or,
+//! in fewer still, stored blocks.
 //!
 //! The match finder remembers only the last place where four bytes were seen. That finds the runs and
 //! the short repeats that a row predictor leaves in a rendered picture. The format is RFC 1950 and 1951.
@@ -74,9 +75,28 @@ fn adler32(data: &[u8]) -> u32 {
     b << 16 | a
 }
 
-/// `data` as a zlib stream.
-pub fn zlib(data: &[u8]) -> Vec<u8> {
-    let mut bits = Bits { out: vec![0x78, 0x01], pending: 0, count: 0 };
+/// `data` as a zlib stream, with codes or stored as it is.
+pub fn zlib(data: &[u8], coded: bool) -> Vec<u8> {
+    let mut out = vec![0x78, 0x01];
+    if coded {
+        out = code(data, out);
+    } else {
+        let mut rest = data.len();
+        for block in data.chunks(0xffff) {
+            rest -= block.len();
+            let length = block.len() as u32;
+            out.push((rest == 0) as u8); // whether it is the last block
+            out.extend_from_slice(&(length | !length << 16).to_le_bytes());
+            out.extend_from_slice(block);
+        }
+    }
+    out.extend_from_slice(&adler32(data).to_be_bytes());
+    out
+}
+
+/// One block with the fixed codes behind what is in `out`.
+fn code(data: &[u8], out: Vec<u8>) -> Vec<u8> {
+    let mut bits = Bits { out, pending: 0, count: 0 };
     bits.put(0b011, 3); // the last block, fixed codes
     let mut last = vec![0u32; 1 << HASH_BITS];
     let mut at = 0;
@@ -103,7 +123,6 @@ pub fn zlib(data: &[u8]) -> Vec<u8> {
     }
     bits.symbol(256);
     bits.put(0, 7); // fill the last byte
-    bits.out.extend_from_slice(&adler32(data).to_be_bytes());
     bits.out
 }
 
@@ -119,7 +138,7 @@ mod tests {
 
     #[test]
     fn runs_compress_and_noise_grows_little() {
-        let run = zlib(&vec![7; 100_000]);
+        let run = zlib(&vec![7; 100_000], true);
         assert!(run.len() < 1_300, "a run of 100,000 bytes became {}", run.len());
         let mut state = 1u32;
         let noise: Vec<u8> = (0..100_000)
@@ -128,7 +147,7 @@ mod tests {
                 (state >> 24) as u8
             })
             .collect();
-        let packed = zlib(&noise).len();
+        let packed = zlib(&noise, true).len();
         assert!(packed < 108_000, "100,000 bytes of noise became {packed}");
     }
 }

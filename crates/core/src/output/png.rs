@@ -4,6 +4,7 @@
 //! no choice. The format is RFC 2083.
 
 use super::deflate::zlib;
+use crate::features;
 
 /// The check value of a chunk. The table is built when called, because as data it would not pack.
 fn crc32(data: &[u8]) -> u32 {
@@ -25,6 +26,10 @@ fn chunk(out: &mut Vec<u8>, name: &[u8; 4], data: &[u8]) {
 
 /// A PNG of `pixels`, which holds `width * height` values 0RGB, neither of the sides 0.
 pub fn png(width: u32, height: u32, pixels: &[u32]) -> Vec<u8> {
+    write(width, height, pixels, features::DEFLATE)
+}
+
+fn write(width: u32, height: u32, pixels: &[u32], coded: bool) -> Vec<u8> {
     assert_eq!(pixels.len(), width as usize * height as usize, "one value a pixel");
     let row = width as usize;
     let mut rows = Vec::with_capacity((1 + 3 * row) * height as usize);
@@ -43,7 +48,7 @@ pub fn png(width: u32, height: u32, pixels: &[u32]) -> Vec<u8> {
     header[8..10].copy_from_slice(&[8, 2]); // bits a channel, RGB
     let mut out = b"\x89PNG\r\n\x1a\n".to_vec();
     chunk(&mut out, b"IHDR", &header);
-    chunk(&mut out, b"IDAT", &zlib(&rows));
+    chunk(&mut out, b"IDAT", &zlib(&rows, coded));
     chunk(&mut out, b"IEND", b"");
     out
 }
@@ -64,7 +69,10 @@ mod tests {
     }
 
     fn comes_back(width: u32, height: u32, pixels: &[u32]) {
-        assert!(decode(&png(width, height, pixels)) == (width, height, pixels.to_vec()), "{width}x{height}");
+        for coded in [true, false] {
+            let decoded = decode(&write(width, height, pixels, coded));
+            assert!(decoded == (width, height, pixels.to_vec()), "{width}x{height}, coded: {coded}");
+        }
     }
 
     fn hash(n: u32) -> u32 {
@@ -97,7 +105,7 @@ mod tests {
             })
             .collect();
         comes_back(width, height, &pixels);
-        let bytes = png(width, height, &pixels).len() as u32;
+        let bytes = write(width, height, &pixels, true).len() as u32;
         assert!(2 * bytes < 3 * width * height, "{bytes} bytes");
     }
 

@@ -73,6 +73,7 @@ pub struct Bloom([Picture; WEIGHTS.len()]);
 impl Bloom {
     /// The glow to add to the exposed picture, if there is any.
     #[inline(never)]
+    #[cfg_attr(luc_size, optimize(size))]
     pub fn glow(&mut self, stage: &Stage, tiles: &[Tile]) -> Option<&Picture> {
         let grade = &stage.scene.grade;
         let across = (stage.width as usize).div_ceil(TILE);

@@ -33,6 +33,7 @@ impl Chain {
 
     /// Applies effects, one after another, to frame `n`.
     #[inline(never)]
+    #[cfg_attr(luc_size, optimize(size))]
     pub fn run(&mut self, effects: &[Effect], tiles: &[Tile], n: u64, counters: &mut Counters) {
         if !features::EFFECTS {
             return;

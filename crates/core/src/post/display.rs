@@ -27,6 +27,7 @@ fn tone(x: f32) -> f32 {
 
 impl Display {
     /// The curves of a grade.
+    #[cfg_attr(luc_size, optimize(size))]
     pub fn new(grade: &Grade) -> Self {
         let entry = |at: usize| {
             let (channel, i) = (at / ENTRIES, at % ENTRIES);

@@ -34,6 +34,7 @@ pub fn noise(first: usize, seed: u32) -> F {
 /// An effect on the pixels `v`, which begin at (`x`, `y`); `px` and `py` run from -1 to 1 over the picture,
 /// upwards. What this program has no such effect for stays as it is.
 #[inline(never)]
+#[cfg_attr(luc_size, optimize(size))]
 pub fn apply(kind: &Kind, around: &Around, (x, y): (usize, usize), (px, py): (F, f32), v: V3) -> V3 {
     let picture = around.picture;
     let near = |right, down| picture.near(x, y, right, down);

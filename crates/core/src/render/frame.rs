@@ -97,6 +97,7 @@ impl Renderer {
     /// Renders frame `n` of a scene as 0RGB rows, top to bottom, into `pixels`, which must hold
     /// `width * height` of them. `n` only seeds the grain.
     #[inline(never)]
+    #[cfg_attr(luc_size, optimize(size))]
     pub fn frame(
         &mut self,
         scene: &Scene,
@@ -105,11 +106,12 @@ impl Renderer {
         quality: &Quality,
         pixels: &mut [u32],
     ) {
-        self.counters = Counters::default();
+        self.counters = Counters::start(&quality.study, Phase::SmokeStep);
         let volume = scene.smoke.as_ref().filter(|_| features::SMOKE).map(|smoke| {
             self.simulation.run(smoke, &mut self.counters);
             Volume::new(smoke, &self.simulation, &mut self.smoke, &mut self.counters)
         });
+        self.counters.watch.stop();
         let mut stage = Stage::new(scene, quality, width, height);
         stage.volume = volume.as_ref();
         let across = (width as usize).div_ceil(TILE);
@@ -120,7 +122,8 @@ impl Renderer {
         let passes: [(Pass, bool); 3] = [(refine, true), (smooth_edges, false), (beams, false)];
         let mut sums = Vec::new();
         let mut ledger = Ledger::default();
-        for pattern in 0..quality.average {
+        let patterns = if features::AVERAGE { quality.average } else { 1 };
+        for pattern in 0..patterns {
             // The first pattern lies in the middle of the pixels.
             (stage.pattern, stage.shift) = (pattern, r2(pattern) - 0.5);
             for (pass, finds_edges) in passes {
@@ -132,7 +135,7 @@ impl Renderer {
                     ledger.enter(&mut self.tiles);
                 }
             }
-            if quality.average > 1 {
+            if patterns > 1 {
                 average(&mut self.tiles, &mut sums, pattern + 1);
             }
         }

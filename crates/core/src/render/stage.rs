@@ -60,6 +60,7 @@ impl<'a> Stage<'a> {
     /// Prepares a frame of `width` by `height` px. A transparent shape beyond the 23rd casts no
     /// shadow; a lamp beyond the eighth casts none either.
     #[inline(never)]
+    #[cfg_attr(luc_size, optimize(size))]
     pub fn new(scene: &'a Scene, quality: &Quality, width: u32, height: u32) -> Self {
         let view = View { origin: scene.camera.position, world_from_view: scene.camera.world_from_camera() };
         let mut bits = Vec::new();
@@ -184,6 +185,7 @@ impl<'a> Stage<'a> {
     /// Mask of the shapes that may show in the square of `side` px at `corner`, see
     /// [`crate::trace::nearest`].
     #[inline(never)]
+    #[cfg_attr(luc_size, optimize(size))]
     pub fn candidates(&self, corner: (usize, usize), side: usize) -> u64 {
         if !self.quality.cull {
             return u64::MAX;

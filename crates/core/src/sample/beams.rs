@@ -18,6 +18,7 @@ const BLOCK: usize = 8;
 
 /// Adds the beams to the tile whose upper left pixel is `corner`.
 #[inline(never)]
+#[cfg_attr(luc_size, optimize(size))]
 pub fn beams(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize), tile: &mut Tile) {
     if !features::BEAMS {
         return;

@@ -4,6 +4,7 @@
 //! whose first point is the centre itself. Colours are averaged as c / (1 + max(c)), so that a
 //! bright light behind an edge doesn't swallow the edge (Karis 2014); the same for all presets.
 
+use super::refine::Cell;
 use super::tile::{Kind, Record, TILE, Tile};
 use super::wave::{Position, Scratch, trace};
 use crate::counters::Counter;
@@ -29,6 +30,7 @@ fn expand(c: Vec3) -> Vec3 {
 }
 
 /// Takes more samples of the tile's edge pixels.
+#[cfg_attr(luc_size, optimize(size))]
 pub fn smooth_edges(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize), tile: &mut Tile) {
     let all = stage.quality.samples;
     let edge = stage.quality.edge_samples.max(all);
@@ -39,29 +41,29 @@ pub fn smooth_edges(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize)
     let height = TILE.min(stage.height as usize - corner.1);
     for side in stage.sides() {
         let before = scratch.counters.rays();
-        let mut pixels: Vec<(usize, usize, u32)> = Vec::new();
+        let mut pixels = std::mem::take(&mut scratch.cells);
+        pixels.clear();
         for y in 0..height {
             for x in 0..width {
                 let count = if tile.edges[y][x] { edge } else { all };
                 if count > 0 && stage.side(corner.0 + x, corner.1 + y) == side {
-                    pixels.push((x, y, count));
+                    pixels.push(Cell { x, y, size: count as usize });
                 }
             }
         }
         let candidates = stage.candidates(corner, TILE);
-        let mut positions = Vec::new();
         for batch in pixels.chunks((BATCH / edge as usize).max(1)) {
-            positions.clear();
-            for &(x, y, count) in batch {
+            scratch.positions.clear();
+            for &Cell { x, y, size: count } in batch {
                 for i in 0..count {
-                    positions.push(place(corner.0 + x, corner.1 + y, i + 1));
+                    scratch.positions.push(place(corner.0 + x, corner.1 + y, i as u32 + 1));
                 }
             }
             scratch.samples.0.clear();
-            trace(stage, scratch, &positions, candidates);
-            scratch.counters.add(Counter::EdgeSamples, positions.len());
+            trace(stage, scratch, candidates);
+            scratch.counters.add(Counter::EdgeSamples, scratch.positions.len());
             let mut next = 0;
-            for &(x, y, count) in batch {
+            for &Cell { x, y, size: count } in batch {
                 let mut sum = compress(tile.get(x, y));
                 for _ in 0..count {
                     sum += compress(scratch.samples.get(next).colour());
@@ -71,6 +73,7 @@ pub fn smooth_edges(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize)
                 tile.set(x, y, colour, Record::new(Kind::Smoothed, 1));
             }
         }
+        scratch.cells = pixels;
         tile.rays[side] = scratch.counters.rays() - before;
     }
 }

@@ -13,7 +13,7 @@
 use super::block::{Sample, Samples};
 use super::interpolate::fill;
 use super::tile::{GRID, Kind, Record, TILE, Tile};
-use super::wave::{Position, Scratch, trace};
+use super::wave::{Scratch, trace};
 use crate::counters::{Counter, Counters};
 use crate::cull::{Bounds, Region, may_cover, occluders};
 use crate::features;
@@ -67,6 +67,7 @@ struct Surroundings {
 }
 
 /// Samples the tile whose upper left pixel is `corner`, and fills its pixels.
+#[cfg_attr(luc_size, optimize(size))]
 pub fn refine(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize), tile: &mut Tile) {
     let width = TILE.min(stage.width as usize - corner.0);
     let height = TILE.min(stage.height as usize - corner.1);
@@ -99,7 +100,8 @@ fn refine_side(
     scratch.grid.clear();
     scratch.grid.resize(GRID * GRID, u32::MAX);
 
-    let mut cells = Vec::new();
+    let mut cells = std::mem::take(&mut scratch.cells);
+    cells.clear();
     let along = |end: usize| (0..TILE).map(|i| i * cell).take_while(move |x| *x < end);
     for y in along(height) {
         for x in along(width) {
@@ -158,6 +160,7 @@ fn refine_side(
             }
         }
     }
+    scratch.cells = cells;
     if !measures {
         tile.rays[side] = scratch.counters.rays() - before;
     }
@@ -165,22 +168,25 @@ fn refine_side(
 
 /// Traces the samples of `cells` that are still missing, in the cells' order.
 #[inline(never)]
+#[cfg_attr(luc_size, optimize(size))]
 fn sample(stage: &Stage, scratch: &mut Scratch, cells: &[Cell], corner: (usize, usize), shapes: u64) {
-    let mut missing: Vec<Position> = Vec::new();
-    let before = scratch.samples.0.len() * 8;
+    let Scratch { grid, positions: missing, samples, .. } = scratch;
+    missing.clear();
+    let before = samples.0.len() * 8;
     for cell in cells {
         for (x, y) in (0..4 + stage.quality.study.centre() as usize).map(|i| cell.point(i)) {
-            let slot = &mut scratch.grid[y * GRID + x];
+            let slot = &mut grid[y * GRID + x];
             if *slot == u32::MAX {
                 *slot = (before + missing.len()) as u32;
                 missing.push(((corner.0 + x) as f32 + 0.5, (corner.1 + y) as f32 + 0.5));
             }
         }
     }
-    trace(stage, scratch, &missing, shapes);
+    trace(stage, scratch, shapes);
 }
 
 /// Shapes that may cast a shadow on any surface between `samples`, per lamp.
+#[cfg_attr(luc_size, optimize(size))]
 fn shadow_casters(stage: &Stage, samples: &Samples) -> [u64; MAX_LAMPS] {
     let mut masks = [0; MAX_LAMPS];
     let mut bounds = Bounds::EMPTY;
@@ -251,6 +257,7 @@ impl Known<'_> {
     ///
     /// Written so that NaN refines.
     #[inline(never)]
+    #[cfg_attr(luc_size, optimize(size))]
     fn smooth(&self, stage: &Stage) -> bool {
         if !self.same_surface() {
             return false;
@@ -282,6 +289,7 @@ impl Known<'_> {
 impl Surroundings {
     /// Whether a shape, or the shadow of one, may lie between the samples of a cell.
     #[inline(never)]
+    #[cfg_attr(luc_size, optimize(size))]
     fn may_hide_something(
         &self,
         stage: &Stage,

@@ -6,6 +6,7 @@
 
 use super::block::{Block, Samples};
 use super::rays::{Packet, RayList};
+use super::refine::Cell;
 use super::scatter::{self, Draw, Way};
 use crate::counters::{Counter, Counters};
 use crate::cull::{Bounds, Region, occluders};
@@ -28,6 +29,10 @@ pub struct Scratch {
     pub counters: Counters,
     /// Indices into `samples` of the grid points of a tile.
     pub grid: Vec<u32>,
+    /// Cells of a tile, or pixels with the number of their additional samples.
+    pub(super) cells: Vec<Cell>,
+    /// Where samples are wanted.
+    pub(super) positions: Vec<Position>,
     rays: RayList,
     next: RayList,
     hits: Vec<Hits>,
@@ -82,11 +87,12 @@ const BLUR_GAIN: f32 = 1.2;
 /// Lists with fewer packets than this are traced against all occluders: culling would cost more.
 const CULL_FROM: usize = 6;
 
-/// Traces one sample for each of `positions` (px, right and down from the picture's corner) and
+/// Traces one sample for each of `scratch.positions` (px, right and down from the picture's corner) and
 /// appends them to `scratch.samples`, from the start of a new block on. `candidates` must hold all
 /// shapes the first rays may hit.
 #[inline(never)]
-pub fn trace(stage: &Stage, scratch: &mut Scratch, positions: &[Position], candidates: u64) {
+pub fn trace(stage: &Stage, scratch: &mut Scratch, candidates: u64) {
+    let positions = &scratch.positions;
     let first = scratch.samples.0.len();
     scratch.counters.add(Counter::PrimaryRays, positions.len());
     scratch.rays.clear();
@@ -220,7 +226,9 @@ fn shade_packet(
     if let (true, Some(volume)) = (features::SMOKE, stage.volume) {
         // Before the fog, which is mostly behind it.
         let pace = stage.quality.smoke * if level > 0 { 3.0 } else { 1.0 };
+        counters.watch.enter(Phase::SmokeRender);
         let (through, glow) = volume.march(rays, hit.t, pace, &stage.lamps, counters);
+        counters.watch.enter(Phase::Shading);
         light += weight * glow;
         weight = weight * through;
     }

@@ -61,6 +61,7 @@ pub struct Emitter {
 
 impl Emitter {
     /// A rectangle of `width` by `height` whose bright side faces `target`, sides level.
+    #[cfg_attr(luc_size, optimize(size))]
     pub fn facing(centre: Vec3, target: Vec3, width: f32, height: f32, radiance: Vec3) -> Self {
         let n = (target - centre).normalize_or(Vec3::NEG_Y);
         let u = cross(Vec3::Y, n).normalize_or(Vec3::X);

@@ -110,6 +110,7 @@ impl Voxels {
     }
 
     /// Gives each cell the value that `rule` makes of place and value.
+    #[cfg_attr(luc_size, optimize(size))]
     pub fn edit_all_by(&mut self, rule: &mut dyn FnMut([i32; 3], u8) -> u8) {
         let [nx, ny, _] = self.size;
         let [bx, by, _] = self.bricks();

@@ -28,6 +28,7 @@ pub struct Lamp {
 }
 
 /// All lamps of a scene: its lights, then one in the middle of each shining rectangle.
+#[cfg_attr(luc_size, optimize(size))]
 pub fn lamps(scene: &Scene) -> Vec<Lamp> {
     let count = scene.lights.len();
     let lamp = |i: usize| {

@@ -42,6 +42,7 @@ impl Points {
     /// Sorts `lights` into tiles of `side` px of a picture of `size` px, whose pixels are `pixel`
     /// wide on the plane one unit ahead.
     #[inline(never)]
+    #[cfg_attr(luc_size, optimize(size))]
     pub fn new(lights: &[PointLight], view: View, size: [u32; 2], pixel: f32, side: u32) -> Self {
         let side = pixel * side as f32;
         let corner = size.map(|n| -0.5 * n as f32 * pixel);

@@ -55,9 +55,9 @@ impl Grid {
     pub fn each(&self, out: &mut [Eight], cells: usize, work: &Work) {
         let [_, row, slice] = self.steps();
         let [_, ny, nz] = self.size;
-        parallel::each(out.chunks_mut(slice / cells), |z, out| {
+        parallel::each(out.chunks_mut(slice / cells).take(nz + 1), |z, out| {
             for (y, out) in out.chunks_mut(row / cells).enumerate() {
-                if (1..=nz).contains(&z) && (1..=ny).contains(&y) {
+                if z > 0 && (1..=ny).contains(&y) {
                     for (x, out) in out[GAP / cells..].iter_mut().enumerate() {
                         let place = [x * cells + 1, y, z];
                         work(place, self.index(place), out);

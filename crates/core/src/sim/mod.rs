@@ -37,6 +37,7 @@ const APART: u32 = 120;
 impl Simulation {
     /// Brings the state to that of `smoke`.
     #[inline(never)]
+    #[cfg_attr(luc_size, optimize(size))]
     pub fn run(&mut self, smoke: &Smoke, counters: &mut Counters) {
         let is_other = !self.of.is_some_and(|of| std::ptr::eq(of, smoke.rules));
         #[cfg(any(test, feature = "study"))]

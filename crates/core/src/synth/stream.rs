@@ -91,6 +91,7 @@ impl Stream {
     }
 
     /// Writes the next samples, left and right.
+    #[cfg_attr(luc_size, optimize(size))]
     pub fn render(&mut self, mut out: &mut [[f32; 2]]) {
         while !out.is_empty() {
             if self.now == self.tune.samples() {

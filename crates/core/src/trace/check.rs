@@ -7,7 +7,8 @@
 //! - **False**: a crossing reported though the shape grown by 4 δ is missed.
 //! - **Score** of a distance t: |t - ref| / max(unit, ulp(ref) / 2), where unit is how far ref moves
 //!   when the shape grows or shrinks by δ (to the middle of the chord, where it vanishes), or a
-//!   quarter of that for 4 δ, where more.
+//!   quarter of that for 4 δ, where more. A cone's slope and its tip are rounded apart, so the slope may
+//!   move alone, or against the tip: a ray along the side through the tip is within or without by their difference.
 //!
 //! `{:?}` of an f32 reads back to the same bits, so a printed shape and ray replay a failure.
 
@@ -85,8 +86,8 @@ impl Tally {
         assert!(worst <= gate, "{name}: score {worst} at {worst_at}");
     }
 
-    /// Judges lane results of a body against the truth; see the module. `truth` answers for a ray
-    /// and two skins, of the side and of the ends; `reach` is |o - c| + r of each ray.
+    /// Judges lane results of a body against the truth; see the module. `truth` answers for a ray and
+    /// three skins: of the side, of the ends, and of the side's slope; `reach` is |o - c| + r of each ray.
     ///
     /// A part is only judged if it is the same with side and ends moved by 4 skins either way. Nor
     /// is a ray that passes an open end judged, unless its parts are such.
@@ -94,7 +95,7 @@ impl Tally {
         &mut self,
         rays: &Rays8,
         span: &Span,
-        truth: impl Fn(&Line, [f64; 2]) -> Option<Inside>,
+        truth: impl Fn(&Line, [f64; 3]) -> Option<Inside>,
         reach: impl Fn(&Line) -> f64,
         open: [bool; 2],
         shape: &dyn std::fmt::Debug,
@@ -108,7 +109,7 @@ impl Tally {
             let replay = || format!("{shape:?} origin {o:?} direction {d:?} got {got:?}");
             self.cases += 1;
             let (reach, length) = (reach(&line), line.d.length());
-            let closed = truth(&line, [0.0; 2]);
+            let closed = truth(&line, [0.0; 3]);
             if closed.is_some_and(|e| e.t[1] > 0.0) {
                 self.hits += 1;
             }
@@ -118,7 +119,7 @@ impl Tally {
             }
             let skin = U * (2.0 * reach);
             let parts = |k: usize, skin: f64| {
-                let part = |side, ends| truth(&line, [side, ends]).map(|e| e.part[k]);
+                let part = |side, ends| truth(&line, [side, ends, side]).map(|e| e.part[k]);
                 [(4.0, 4.0), (4.0, -4.0), (-4.0, 4.0), (-4.0, -4.0)]
                     .into_iter()
                     .all(|(side, ends)| part(side * skin, ends * skin) == closed.map(|e| e.part[k]))
@@ -126,7 +127,9 @@ impl Tally {
             if open != [false; 2] && !(parts(0, skin) && parts(1, skin)) {
                 continue;
             }
-            let truth = |skin: f64| truth(&line, [skin; 2]).and_then(|e| through(e, open));
+            let bent =
+                |skin: f64, slope: f64| truth(&line, [skin, skin, slope]).and_then(|e| through(e, open));
+            let truth = |skin: f64| bent(skin, skin);
             let exact = closed.and_then(|e| through(e, open));
             // What is crossed far out only counts by the skin there.
             let nearest =
@@ -154,13 +157,22 @@ impl Tally {
                     continue;
                 }
                 let skin = U * (reach + want.abs() * length);
-                let moved = |skin: f64| truth(skin).map_or(middle, |e| e.t[k]);
-                let unit = |k: f64| (moved(k * skin) - want).abs().max((moved(-k * skin) - want).abs()) / k;
-                let unit = unit(1.0).max(unit(4.0));
-                if unit == f64::INFINITY {
+                let moved =
+                    |side: f64, slope: f64| (bent(side, slope).map_or(middle, |e| e.t[k]) - want).abs();
+                let unit = |side: f64, slope: f64| {
+                    let both = |by: f64| moved(side * by, slope * by).max(moved(-side * by, -slope * by));
+                    both(skin).max(0.25 * both(4.0 * skin))
+                };
+                let score = |unit: f64| (got - want).abs() / unit.max(half_ulp(want));
+                let mut unit_here = unit(1.0, 1.0);
+                if score(unit_here) > 1.0 {
+                    let against = (0..8).map(|i| unit(1.0 / f64::from(1 << i), -1.0));
+                    unit_here = against.fold(unit_here.max(unit(0.0, 1.0)), f64::max);
+                }
+                if unit_here == f64::INFINITY {
                     continue;
                 }
-                let score = (got - want).abs() / unit.max(half_ulp(want));
+                let score = score(unit_here);
                 self.score(score, || format!("{} truth {exact:?}", replay()));
                 if want != -1.0 && part[k][i] != exact.part[k] as f32 && parts(k, skin) {
                     self.fail("part", || format!("{} part {} truth {exact:?}", replay(), part[k][i]));

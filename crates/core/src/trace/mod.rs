@@ -15,6 +15,7 @@ mod surface;
 mod texture;
 mod triangle;
 mod voxels;
+mod walk;
 
 #[cfg(test)]
 pub(crate) mod check;
@@ -32,6 +33,8 @@ pub use surface::{Surface, surface};
 pub use texture::relief_within;
 pub use triangle::{Aim, Crossing, triangle};
 pub use voxels::voxels;
+pub(crate) use voxels::{MOST_STEPS, ROOM};
+pub use walk::Walk;
 
 use crate::counters::{Counter, Counters};
 use crate::features;

@@ -38,7 +38,9 @@ impl Axial {
         let start = -f.dot(d) / d.dot(d);
         let f = f + d * start;
         let n = d.cross_exact(a);
-        Self { start, origin: f.dot(a), direction: d.dot(a), n, m: f.cross_exact(a), cross: f.dot(n).abs() }
+        // Along an end, or on a flat cone's side, f32 wouldn't know whether the ray rises or falls.
+        let direction = d.dot_exact(a);
+        Self { start, origin: f.dot(a), direction, n, m: f.cross_exact(a), cross: f.dot(n).abs() }
     }
 }
 

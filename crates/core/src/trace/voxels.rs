@@ -1,12 +1,10 @@
-//! Rays against voxels: a walk from face to face (Amanatides and Woo 1987), eight rays at a time, that takes
-//! bricks without a solid cell in one step.
+//! Rays against voxels: a [`Walk`] from face to face, eight rays at a time, that takes bricks without a solid
+//! cell in one step.
 //!
-//! Nothing accumulates: the distance of a face is `(face - o) / d` wherever it is asked for, so it only
-//! grows along the ray. Where a walk begins, or leaves an empty brick, its cell is that of a point a little
-//! before, and the faces that still come lead on from there; so it meets the very cells of a walk by cells.
-//! Ties have an order: a face across x comes before one across y at the same distance, and that before one
-//! across z. So a ray through an edge visits one of the two cells beside it, always the same.
+//! Where a walk begins, or leaves an empty brick, its cell is that of a point a little before, and the faces
+//! that still come lead on from there; so it meets the very cells of a walk by cells.
 
+use super::walk::Walk;
 use super::{Rays8, Span};
 use crate::counters::{Counter, Counters};
 use crate::math::Vec3;
@@ -15,14 +13,11 @@ use crate::math::lanes::{Bound, F, V3, from_bits, splat};
 use crate::math::noise;
 use crate::scene::Voxels;
 
-/// Directions nearer to 0 are taken for this, which is too small to be seen, and so never give 0/0.
-const LEVEL: f32 = 1e-30;
-
 /// How far before its faces a walk looks for its cell, in cells: more than rounding moves a point.
-const ROOM: f32 = 0.01;
+pub const ROOM: f32 = 0.01;
 
 /// Steps of a walk, at most: more than across any grid.
-const MOST_STEPS: usize = 4 * Voxels::MOST;
+pub const MOST_STEPS: usize = 4 * Voxels::MOST;
 
 /// Where `rays` come to the first face of a solid cell before `limit`. The parts are the axes across which
 /// they do. The cell that a ray starts in doesn't count.
@@ -32,32 +27,22 @@ pub fn voxels(rays: &Rays8, grid: &Voxels, limit: F, counters: &mut Counters) ->
     let [lo, hi] = grid.bounds();
     let (mut now, exit) = rays.in_box(lo - grid.cell * ROOM, hi + grid.cell * ROOM, limit);
     let mut busy = now.simd_le(exit);
-    let (o, d) = (grid.in_cells(rays.origin), rays.direction * splat(1.0 / grid.cell));
-    let (o, d) = ([o.x, o.y, o.z], [d.x, d.y, d.z]);
-    let d = d.map(|d| d.abs().simd_lt(splat(LEVEL)).select(splat(LEVEL), d));
-    let inverse = d.map(|d| F::ONE / d);
-    let up = d.map(|d| d.simd_gt(F::ZERO));
-    let room = inverse.iter().fold(splat(f32::INFINITY), |room, i| room.at_most(i.abs())) * splat(ROOM);
-    let place = |axis: usize, t: F| (o[axis] + d[axis] * t).floor();
-    // Distances of the far faces of boxes of cells.
-    let far = |from: &[F; 3], side: f32| -> [F; 3] {
-        std::array::from_fn(|axis| (from[axis] + (up[axis] & splat(side)) - o[axis]) * inverse[axis])
-    };
-    let mut cell: [F; 3] = std::array::from_fn(|axis| place(axis, now));
+    let walk = Walk::new(grid.in_cells(rays.origin), rays.direction * splat(1.0 / grid.cell));
+    let room = walk.inverse.iter().fold(splat(f32::INFINITY), |room, i| room.at_most(i.abs())) * splat(ROOM);
+    let mut cell: [F; 3] = std::array::from_fn(|axis| walk.place(axis, now));
+    // How far bricks have been taken: along a face, rounding may put a ray back across it, to leave again.
+    let mut past = now;
     for _ in 0..MOST_STEPS {
-        let [x, y, z] = far(&cell, 1.0);
-        now = x.at_most(y).at_most(z);
+        let across;
+        (now, across) = walk.leave(&cell);
         busy &= now.simd_lt(exit);
         if !busy.any() {
             break;
         }
-        let x = x.simd_eq(now);
-        let y = y.simd_eq(now) & !x;
-        let across = [x, y, !(x | y)];
         let (mut index, mut bit, mut inside) = (F::ZERO, F::ZERO, busy);
         let mut from = cell;
         for axis in [2, 1, 0] {
-            cell[axis] += across[axis] & up[axis].select(F::ONE, splat(-1.0));
+            cell[axis] = walk.next(cell[axis], axis, across[axis]);
             let bricks = splat(grid.bricks()[axis] as f32);
             let brick = (cell[axis] * splat(0.25)).floor();
             from[axis] = brick * splat(4.0);
@@ -78,13 +63,14 @@ pub fn voxels(rays: &Rays8, grid: &Voxels, limit: F, counters: &mut Counters) ->
         }
         let hit = from_bits(solid) & now.simd_gt(F::ZERO);
         span.enter = hit.select(now, span.enter);
-        span.enter_part = hit.select((y & F::ONE) + (across[2] & splat(2.0)), span.enter_part);
+        span.enter_part = hit.select((across[1] & F::ONE) + (across[2] & splat(2.0)), span.enter_part);
         busy &= !hit;
-        let [x, y, z] = far(&from, 4.0);
+        let [x, y, z] = walk.far(&from, 4.0);
         let leave = x.at_most(y).at_most(z) - room;
-        let skip = from_bits(empty) & leave.simd_gt(now + room);
+        let skip = from_bits(empty) & leave.simd_gt(now.at_least(past) + room);
+        past = skip.select(leave, past);
         for axis in 0..3 {
-            let last = place(axis, leave).at_least(from[axis]).at_most(from[axis] + splat(3.0));
+            let last = walk.place(axis, leave).at_least(from[axis]).at_most(from[axis] + splat(3.0));
             cell[axis] = skip.select(last, cell[axis]);
         }
     }

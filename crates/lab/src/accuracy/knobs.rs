@@ -1,9 +1,11 @@
 //! The knobs of the study: what each trades, and the settings at which it is measured, all else as
 //! in the preset `high`.
 
+use luc_core::math::lanes::F;
 use luc_core::quality::{Quality, Rung};
-use luc_core::scene::{Scene, Shading};
+use luc_core::scene::{Motion, Rules, Scene, Shading};
 use luc_core::study::Study;
+use std::sync::Mutex;
 
 /// The preset from which each knob is turned.
 pub const BASE: &str = "high";
@@ -17,6 +19,8 @@ pub enum Change {
     Shading(Shading, u32),
     /// No bloom.
     NoBloom,
+    /// Smoke on a grid of so many times as many cells along each side, with so many sweeps of the pressure.
+    Smoke(f32, u32),
 }
 
 /// Which picture is the truth for a knob.
@@ -26,15 +30,51 @@ pub enum Truth {
     Show,
     /// The part under microfacets with two bounces of diffuse light.
     Light,
+    /// The part at the quality of [`BASE`], its smoke on a grid twice as fine with [`MANY`] sweeps.
+    Smoke,
+}
+
+impl Truth {
+    /// All truths, in the order of their numbers.
+    pub const ALL: [Truth; 3] = [Truth::Show, Truth::Light, Truth::Smoke];
 }
 
 /// What a knob is measured on.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum On {
-    /// The parts of the show.
+    /// All parts of the show.
     Show,
+    /// Parts with fields.
+    Fields,
+    /// Parts whose lamps cast soft shadows.
+    SoftLamps,
+    /// Parts with smoke.
+    Smoke,
     /// The scene of small lights.
     Fireflies,
+}
+
+impl On {
+    /// Whether it means a scene of the show.
+    pub fn means(self, scene: &Scene) -> bool {
+        match self {
+            On::Show => true,
+            On::Fields => !scene.fields.is_empty(),
+            On::SoftLamps => scene.soft && !scene.emitters.is_empty(),
+            On::Smoke => scene.smoke.is_some(),
+            On::Fireflies => false,
+        }
+    }
+
+    /// Which parts those are, for people.
+    pub fn words(self) -> &'static str {
+        match self {
+            On::Show | On::Fireflies => "",
+            On::Fields => "Measured on the parts that have fields.",
+            On::SoftLamps => "Measured on the part with soft shadows.",
+            On::Smoke => "Measured on the part with smoke.",
+        }
+    }
 }
 
 /// One position of a knob.
@@ -86,6 +126,33 @@ fn shaded(mut scene: Scene, shading: Shading, bounces: u32) -> Scene {
     Scene { shading, bounces, rough: true, ..scene }
 }
 
+/// Sweeps of the pressure in the truth of smoke.
+pub const MANY: u32 = 32;
+
+/// Rules on a finer or coarser grid over the same box, made once, since a simulation goes on only where it
+/// finds the same rules.
+fn gridded(rules: &'static Rules, finer: f32, sweeps: u32) -> &'static Rules {
+    static MADE: Mutex<Vec<(f32, u32, &'static Rules)>> = Mutex::new(Vec::new());
+    let mut made = MADE.lock().unwrap_or_else(|e| e.into_inner());
+    if let Some(&(.., rules)) = made.iter().find(|m| (m.0, m.1) == (finer, sweeps)) {
+        return rules;
+    }
+    let cells = |n: usize, multiple: usize| ((n as f32 * finer).ceil() as usize).next_multiple_of(multiple);
+    let [x, y, z] = rules.size;
+    // Accelerations are in cells.
+    let times = |values: [f32; 8]| (F::new(values) * F::splat(finer)).to_array();
+    let air = Motion {
+        by_density: times(rules.air.by_density),
+        by_heat: times(rules.air.by_heat),
+        sweeps,
+        ..rules.air
+    };
+    let size = [cells(x, 8), cells(y, 1), cells(z, 1)];
+    let rules = Box::leak(Box::new(Rules { cell: rules.cell / finer, size, air, ..*rules }));
+    made.push((finer, sweeps, rules));
+    rules
+}
+
 /// The light that the truth of shading has.
 pub const FULL_LIGHT: Change = Change::Shading(Shading::Ggx, 2);
 
@@ -96,6 +163,11 @@ impl Change {
             Change::None => {}
             Change::Shading(shading, bounces) => scene = shaded(scene, shading, bounces),
             Change::NoBloom => scene.grade.bloom = 0.0,
+            Change::Smoke(finer, sweeps) => {
+                if let Some(smoke) = &mut scene.smoke {
+                    smoke.rules = gridded(smoke.rules, finer, sweeps);
+                }
+            }
         }
         scene
     }
@@ -302,6 +374,76 @@ fn tracing(b: &Quality) -> Vec<Knob> {
     ]
 }
 
+/// A knob that is measured only on some parts.
+fn only(on: On, knob: Knob) -> Knob {
+    Knob { on, ..knob }
+}
+
+/// The knobs of what only some parts have: soft shadows, the sight of smoke, and its motion.
+fn special(b: &Quality) -> Vec<Knob> {
+    let whole = |v: u32| v.to_string();
+    let moving = |label: String, finer: f32, sweeps: u32| Setting {
+        label,
+        quality: base(),
+        change: Change::Smoke(finer, sweeps),
+        scale: 1.0,
+    };
+    let simulated = |name, title, words, settings: Vec<Setting>, base: &str| Knob {
+        settings,
+        base: base.into(),
+        truth: Truth::Smoke,
+        samples: false,
+        ..only(On::Smoke, turned((name, title, words), &[], whole, 0, |_, _| {}))
+    };
+    vec![
+        only(
+            On::SoftLamps,
+            turned(
+                (
+                    "shadow-samples",
+                    "Shadow samples",
+                    "Rays to a shining rectangle for its soft shadow; 1 casts a hard one.",
+                ),
+                &[1, 2, 4, 8, 16, 32],
+                whole,
+                b.shadow_samples,
+                |q, v| q.shadow_samples = v,
+            ),
+        ),
+        only(
+            On::Smoke,
+            turned(
+                (
+                    "smoke-step",
+                    "Volume step",
+                    "Length of the steps of rays through smoke, cells of its grid. Light has no step of its own: it goes through smoke with the steps of its motion.",
+                ),
+                &[4.0, 2.0, 1.5, 1.0, 0.5, 0.25],
+                |v: f32| v.to_string(),
+                b.smoke,
+                |q, v| q.smoke = v,
+            ),
+        ),
+        simulated(
+            "smoke-grid",
+            "Grid of smoke",
+            "Cells along a side of the grid, as a share of the show's. Times are of the frame and half a step, since every other frame takes one. The truth has twice as many and twice the sweeps; turbulence drifts apart, so no picture comes very near to it.",
+            [0.5, 0.75, 1.0, 1.33].map(|finer| moving(finer.to_string(), finer, SWEEPS)).into(),
+            "1",
+        ),
+        simulated(
+            "smoke-sweeps",
+            "Sweeps of the pressure",
+            "Jacobi sweeps by which a step takes divergence away, against the same truth.",
+            [2, 4, 8, SWEEPS, 32].map(|sweeps| moving(sweeps.to_string(), 1.0, sweeps)).into(),
+            &SWEEPS.to_string(),
+        ),
+    ]
+}
+
+/// Sweeps of the show's smoke.
+const SWEEPS: u32 = 16;
+
 /// A knob of light: all its settings show the scene under `change`.
 fn of_light(knob: Knob, change: Change) -> Knob {
     let settings = knob.settings.into_iter().map(|s| Setting { change, ..s }).collect();
@@ -411,8 +553,12 @@ fn light(b: &Quality) -> Vec<Knob> {
 pub fn knobs() -> Vec<Knob> {
     let b = &base();
     let still = |knob| Knob { samples: false, ..knob };
-    let rays = tracing(b).into_iter().map(still);
-    std::iter::once(presets()).chain(sampling(b)).chain(rays).chain(light(b)).collect()
+    let of_fields = |knob: Knob| match knob.name {
+        "epsilon" | "steps" | "pace" => only(On::Fields, knob),
+        _ => knob,
+    };
+    let rays = tracing(b).into_iter().map(still).map(of_fields);
+    std::iter::once(presets()).chain(sampling(b)).chain(rays).chain(light(b)).chain(special(b)).collect()
 }
 
 #[cfg(test)]
@@ -427,6 +573,21 @@ mod tests {
             assert_eq!(found[0].quality, base(), "{}", knob.name);
             assert!(found[0].change == Change::None && found[0].scale == 1.0, "{}", knob.name);
         }
+    }
+
+    #[test]
+    fn a_finer_grid_fills_the_same_box_and_moves_alike() {
+        let scene = |n| luc::show::PARTS.iter().find(|p| p.name == "smoke").map(|p| (p.scene)(n)).unwrap();
+        let rules = |finer, sweeps| Change::Smoke(finer, sweeps).of(scene(300)).smoke.unwrap().rules;
+        let own = scene(300).smoke.unwrap().rules;
+        assert_eq!((own.air.sweeps, rules(1.0, SWEEPS).size), (SWEEPS, own.size));
+        let fine = rules(2.0, MANY);
+        assert_eq!(fine.size, own.size.map(|n| 2 * n));
+        assert_eq!((fine.hi() - fine.lo, fine.air.sweeps), (own.hi() - own.lo, MANY));
+        assert_eq!(fine.air.by_heat[1], 2.0 * own.air.by_heat[1]);
+        assert!(std::ptr::eq(fine, rules(2.0, MANY)), "the same rules, so that the simulation goes on");
+        let coarse = rules(0.75, SWEEPS);
+        assert!(coarse.size[0] % 8 == 0 && (coarse.hi() - own.hi()).min_element() > -1e-4);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! One frame under all settings: interleaved passes for the time, then counts and errors.
 
-use super::knobs::{Change, FULL_LIGHT, Knob, Setting, Truth};
+use super::knobs::{Change, FULL_LIGHT, Knob, MANY, Setting, Truth, base};
 use super::table::{Figure, Row};
 use crate::figures::{mean, processor_ms, quantile};
 use crate::metric::{Picture, flicker, flip, greatest, linear_rmse, psnr, psnr_of_rmse, ssim};
@@ -23,6 +23,8 @@ pub struct Effort {
     pub enough: f64,
     /// Samples of a pixel of the truth besides the first.
     pub samples: u32,
+    /// Those of the truth for reflection models, whose rays branch.
+    pub light_samples: u32,
     /// Consecutive frames over which flicker is measured.
     pub flicker: u64,
 }
@@ -50,7 +52,9 @@ pub fn truth_setting(truth: Truth, samples: u32) -> Setting {
     let [.., (_, reference)] = Quality::PRESETS;
     let (change, quality) = match truth {
         Truth::Show => (Change::None, Quality { samples, edge_samples: samples, ..reference }),
-        Truth::Light => (FULL_LIGHT, reference),
+        Truth::Light => (FULL_LIGHT, Quality { samples, edge_samples: samples, ..reference }),
+        // So that errors are those of the motion alone.
+        Truth::Smoke => (Change::Smoke(2.0, MANY), base()),
     };
     Setting { label: String::new(), quality, change, scale: 1.0 }
 }
@@ -58,7 +62,8 @@ pub fn truth_setting(truth: Truth, samples: u32) -> Setting {
 /// Draws the truth of a frame.
 pub fn truth(subject: &Subject, n: u64, effort: &Effort, truth: Truth) -> Picture {
     let mut picture = Picture::new(effort.size);
-    draw(&mut Renderer::default(), subject, n, &truth_setting(truth, effort.samples), &mut picture);
+    let samples = if truth == Truth::Light { effort.light_samples } else { effort.samples };
+    draw(&mut Renderer::default(), subject, n, &truth_setting(truth, samples), &mut picture);
     picture
 }
 
@@ -101,6 +106,34 @@ pub fn time(
     timings
 }
 
+/// Draws the frames before `n` and it itself, one by one, so that smoke moves; a time is the mean of two
+/// frames, one of which took a step.
+pub fn time_moving(
+    pool: &ThreadPool,
+    subject: &Subject,
+    n: u64,
+    setting: &Setting,
+    effort: &Effort,
+) -> (Timing, Picture) {
+    let mut timing = Timing::default();
+    let mut renderer = Renderer::default();
+    let mut picture = Picture::new(effort.size);
+    let first = n.saturating_sub(2 * effort.passes as u64);
+    draw(&mut renderer, subject, first, setting, &mut picture);
+    let mut before = (Instant::now(), processor_ms());
+    for k in first + 1..=n {
+        pool.install(|| draw(&mut renderer, subject, k, setting, &mut picture));
+        if (k - first).is_multiple_of(2) {
+            let now = (Instant::now(), processor_ms());
+            timing.wall.push((now.0 - before.0).as_secs_f64() * 500.0);
+            timing.times.push((now.1 - before.1) * 0.5);
+            before = now;
+        }
+    }
+    timing.counters = renderer.counters;
+    (timing, picture)
+}
+
 /// Fills in times and counts.
 pub fn fill_counts(row: &mut Row, timing: &Timing, pixels: f64) {
     use Counter::*;
@@ -113,6 +146,8 @@ pub fn fill_counts(row: &mut Row, timing: &Timing, pixels: f64) {
         EndlessTests,
         ConeTests,
         TriangleTests,
+        VoxelSteps,
+        SmokeMarched,
         FieldSteps,
         NodeVisits,
         FacetTests,
@@ -155,11 +190,17 @@ pub fn fill_errors(row: &mut Row, truth: &Picture, picture: &Picture) {
 }
 
 /// PSNR of display values against the same setting with every pixel traced, dB.
-pub fn error_of_sampling(subject: &Subject, n: u64, setting: &Setting, picture: &Picture) -> f64 {
+pub fn error_of_sampling(
+    renderer: &mut Renderer,
+    subject: &Subject,
+    n: u64,
+    setting: &Setting,
+    picture: &Picture,
+) -> f64 {
     let quality = setting.quality.every_pixel();
     let mut full = Picture::new(picture.size);
     let full_setting = Setting { quality, label: String::new(), ..*setting };
-    draw(&mut Renderer::default(), subject, n, &full_setting, &mut full);
+    draw(renderer, subject, n, &full_setting, &mut full);
     psnr(&full.pixels, &picture.pixels)
 }
 
@@ -194,13 +235,18 @@ pub fn flicker_truths(
 }
 
 /// Flicker of a setting: the root of the mean square over all steps in time.
-pub fn measure_flicker(subject: &Subject, n: u64, setting: &Setting, truths: &[Picture]) -> f64 {
-    let mut renderer = Renderer::default();
+pub fn measure_flicker(
+    renderer: &mut Renderer,
+    subject: &Subject,
+    n: u64,
+    setting: &Setting,
+    truths: &[Picture],
+) -> f64 {
     let mut squares = Vec::new();
     let mut before: Option<Picture> = None;
     for (i, n) in flicker_frames(subject, n, truths.len() as u64).enumerate() {
         let mut picture = Picture::new(truths[i].size);
-        draw(&mut renderer, subject, n, setting, &mut picture);
+        draw(renderer, subject, n, setting, &mut picture);
         if let Some(before) = &before {
             squares.push(flicker([before, &picture], [&truths[i - 1], &truths[i]]).powi(2));
         }

@@ -16,9 +16,10 @@ mod plots;
 mod table;
 
 use crate::metric::Picture;
+use crate::numbers;
 use crate::progress::Progress;
 use crate::subject::Subject;
-use knobs::{Knob, On, Truth, knobs};
+use knobs::{Change, Knob, On, Truth, knobs};
 use lexopt::prelude::*;
 use luc_core::quality::Quality;
 use luc_core::render::Renderer;
@@ -46,7 +47,7 @@ struct Options {
 }
 
 /// Frames of each part that are measured.
-const FRAMES: u64 = 3;
+const FRAMES: u64 = 2;
 
 /// Where the committed study lies, and where that of `--quick`.
 const OUT: &str = "docs/accuracy";
@@ -90,6 +91,7 @@ struct Study {
     knobs: Vec<Knob>,
     effort: Effort,
     frames: u64,
+    quick: bool,
     flicker: bool,
     pool: ThreadPool,
 }
@@ -107,9 +109,9 @@ pub fn run(args: &[String]) -> Result<(), String> {
     let mut subjects = parts.clone();
     subjects.push(Subject::fireflies());
     let effort = if options.quick {
-        Effort { size: (160, 90), passes: 1, enough: 0.0, samples: 31, flicker: 3 }
+        Effort { size: (96, 54), passes: 1, enough: 0.0, samples: 31, light_samples: 3, flicker: 3 }
     } else {
-        Effort { size: (320, 180), passes: 5, enough: 600.0, samples: 63, flicker: 30 }
+        Effort { size: (240, 135), passes: 5, enough: 200.0, samples: 63, light_samples: 15, flicker: 30 }
     };
     let effort = Effort { size: options.size.unwrap_or(effort.size), ..effort };
     let out = options.out.clone().unwrap_or_else(|| if options.quick { QUICK_OUT } else { OUT }.into());
@@ -120,6 +122,7 @@ pub fn run(args: &[String]) -> Result<(), String> {
         knobs: knobs(),
         effort,
         frames: options.frames.unwrap_or(if options.quick { 1 } else { FRAMES }),
+        quick: options.quick,
         flicker: options.flicker,
         pool: pool.map_err(|_| format!("{threads} threads can't be started"))?,
     };
@@ -140,9 +143,13 @@ pub fn run(args: &[String]) -> Result<(), String> {
         let mut table = Table::open(&file, &conditions, options.fresh)?;
         study.measure(&mut table)?;
         growth::measure(&study.pool, &parts, &out, &conditions, options.quick, options.fresh)?;
+        if options.fresh || !out.join(numbers::TABLE).exists() {
+            numbers::write_study(if options.quick { 5_000 } else { 200_000 }, &out)?;
+        }
     }
     let (conditions, rows) = table::read(&file)?;
-    let data = page::Data { rows, conditions, knobs: knobs(), growth: growth::read(&out)? };
+    let numbers = std::fs::read_to_string(out.join(numbers::TABLE)).unwrap_or_default();
+    let data = page::Data { rows, conditions, knobs: knobs(), growth: growth::read(&out)?, numbers };
     plots::write(&data, &out)?;
     if !options.pages_only || !out.join(pictures::FOLDER).exists() {
         pictures::write(&parts, &out, options.quick)?;
@@ -162,7 +169,7 @@ fn fingerprint() -> u64 {
     let mut pixels = vec![0; 64 * 36];
     for subject in Subject::show() {
         add(subject.name.as_bytes());
-        for n in subject.spread(2) {
+        for n in subject.spread(4).take(2) {
             renderer.frame(&subject.bare(n), n, (64, 36), &knobs::base(), &mut pixels);
             pixels.iter().for_each(|p| add(&p.to_be_bytes()));
         }
@@ -175,9 +182,11 @@ impl Study {
     /// The settings that are still to be measured on a frame. Knobs of light, whose truth is dear,
     /// are measured on the middle frame only.
     fn tasks(&self, subject: &Subject, n: u64, middle: bool, rows: &[Row]) -> Vec<Task<'_>> {
-        let on = if subject.name == Subject::fireflies().name { On::Fireflies } else { On::Show };
+        let fireflies = subject.name == Subject::fireflies().name;
+        let scene = subject.bare(n);
+        let on = |on: On| if fireflies { on == On::Fireflies } else { on.means(&scene) };
         let mut tasks = Vec::new();
-        for knob in self.knobs.iter().filter(|k| k.on == on && (middle || k.truth == Truth::Show)) {
+        for knob in self.knobs.iter().filter(|k| on(k.on) && (middle || k.truth == Truth::Show)) {
             for setting in &knob.settings {
                 if !rows.iter().any(|r| r.is(subject.name, n, knob.name, &setting.label)) {
                     tasks.push((knob, setting));
@@ -189,7 +198,9 @@ impl Study {
 
     /// Frames of a subject, the middle one first, with whether it is that.
     fn frames(&self, subject: &Subject) -> Vec<(u64, bool)> {
-        let frames: Vec<u64> = subject.spread(self.frames).collect();
+        // Smoke has come a long way to its middle; the quick study has no time for that.
+        let from = if self.quick && subject.bare(0).smoke.is_some() { 6 } else { 1 };
+        let frames: Vec<u64> = subject.spread(self.frames * from).take(self.frames as usize).collect();
         let middle = frames.len() / 2;
         let rest = frames.iter().enumerate().filter(|(i, _)| *i != middle).map(|(_, &n)| (n, false));
         std::iter::once((frames[middle], true)).chain(rest).collect()
@@ -227,12 +238,12 @@ impl Study {
         let mut known: Option<(String, u64, Truth, Picture)> = None;
         let truth_of = |row: &Row| self.knobs.iter().find(|k| k.name == row.knob).map(|k| k.truth);
         let mut order: Vec<&Row> = rows.iter().collect();
-        order.sort_by_key(|row| truth_of(row) == Some(Truth::Light));
+        order.sort_by_key(|row| truth_of(row).map(|truth| truth as u32));
         for row in order {
             progress.step(1.0, &format!("{} {}: {} {}", row.part, row.frame, row.knob, row.value));
             let mut row = row.clone();
             let subject = self.subjects.iter().find(|s| s.name == row.part);
-            let knob = self.knobs.iter().find(|k| k.name == row.knob && k.on == On::Show);
+            let knob = self.knobs.iter().find(|k| k.name == row.knob && k.on != On::Fireflies);
             let setting = knob.and_then(|k| k.settings.iter().find(|s| s.label == row.value));
             if let (Some(subject), Some(knob), Some(setting)) = (subject, knob, setting) {
                 let kept = known
@@ -264,20 +275,36 @@ impl Study {
     ) -> Result<(), String> {
         let effort = &self.effort;
         let needs = |truth| tasks.iter().any(|(knob, _)| knob.truth == truth);
-        let truths = [Truth::Show, Truth::Light].map(|truth| {
+        let truths = Truth::ALL.map(|truth| {
             progress.step(0.0, &format!("{} {n}: truth", subject.name));
             needs(truth).then(|| measure::truth(subject, n, effort, truth))
         });
-        let timings = measure::time(&self.pool, subject, n, tasks, effort, |what| progress.step(0.0, what));
+        let (moving, still): (Vec<Task>, Vec<Task>) =
+            tasks.iter().partition(|(_, setting)| matches!(setting.change, Change::Smoke(..)));
+        let mut timings =
+            measure::time(&self.pool, subject, n, &still, effort, |what| progress.step(0.0, what));
+        let mut pictures: Vec<Option<Picture>> = still.iter().map(|_| None).collect();
+        for (knob, setting) in &moving {
+            progress.step(0.0, &format!("{} {n}: {} {}", subject.name, knob.name, setting.label));
+            let (timing, picture) = measure::time_moving(&self.pool, subject, n, setting, effort);
+            timings.push(timing);
+            pictures.push(Some(picture));
+        }
+        let tasks: Vec<Task> = still.into_iter().chain(moving).collect();
+        // One renderer, so that smoke is found again where it was.
+        let mut renderer = Renderer::default();
         let flickers = self.flicker && middle && tasks.iter().any(|(knob, _)| knob.samples);
-        let moving = match flickers {
+        let frames = match flickers {
             true => measure::flicker_truths(subject, n, effort, |what| progress.step(0.0, what)),
             false => Vec::new(),
         };
-        for (task, timing) in tasks.iter().zip(&timings) {
+        for ((task, timing), picture) in tasks.iter().zip(&timings).zip(pictures) {
             let (knob, setting) = *task;
-            let mut picture = Picture::new(effort.size);
-            measure::draw(&mut Renderer::default(), subject, n, setting, &mut picture);
+            let picture = picture.unwrap_or_else(|| {
+                let mut picture = Picture::new(effort.size);
+                measure::draw(&mut renderer, subject, n, setting, &mut picture);
+                picture
+            });
             let mut row = Row {
                 part: subject.name.into(),
                 frame: n,
@@ -286,18 +313,20 @@ impl Study {
                 figures: [f64::NAN; Figure::ALL.len()],
             };
             measure::fill_counts(&mut row, timing, picture.pixels.len() as f64);
-            let truth = &truths[usize::from(knob.truth == Truth::Light)];
-            if let (Some(truth), On::Show) = (truth, knob.on) {
+            if let (Some(truth), true) = (&truths[knob.truth as usize], knob.on != On::Fireflies) {
                 measure::fill_errors(&mut row, truth, &picture);
             }
             if knob.samples {
-                let error = measure::error_of_sampling(subject, n, setting, &picture);
+                let error = measure::error_of_sampling(&mut renderer, subject, n, setting, &picture);
                 row.set(Figure::PsnrOfSampling, error);
             }
             // The truth has no flicker, and the mean of many patterns takes as long to tell as all the rest.
             let worth = setting.quality.samples < 15 && setting.quality.average <= 4;
-            if middle && knob.samples && worth && moving.len() > 1 {
-                row.set(Figure::Flicker, measure::measure_flicker(subject, n, setting, &moving));
+            if middle && knob.samples && worth && frames.len() > 1 {
+                row.set(
+                    Figure::Flicker,
+                    measure::measure_flicker(&mut renderer, subject, n, setting, &frames),
+                );
             }
             table.add(row)?;
             progress.step(

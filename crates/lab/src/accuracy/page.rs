@@ -19,14 +19,22 @@ pub struct Data {
     pub knobs: Vec<Knob>,
     /// Cost over size.
     pub growth: Vec<Point>,
+    /// Formulas in f32 and f64, comma separated.
+    pub numbers: String,
 }
 
 impl Data {
     /// Rows that compare the show as it is with its truth.
     pub fn show_rows(&self) -> impl Iterator<Item = &Row> {
-        let light =
-            |row: &Row| self.knobs.iter().any(|k| k.name == row.knob && k.truth == super::Truth::Light);
-        self.rows.iter().filter(move |row| !light(row) && row.get(Figure::Flip).is_finite())
+        let shown =
+            |row: &Row| self.knobs.iter().any(|k| k.name == row.knob && k.truth == super::Truth::Show);
+        self.rows.iter().filter(move |row| shown(row) && row.get(Figure::Flip).is_finite())
+    }
+
+    /// Those of knobs that all parts have, so that means over all parts can be compared.
+    pub fn common_rows(&self) -> impl Iterator<Item = &Row> {
+        let common = |row: &Row| self.knobs.iter().any(|k| k.name == row.knob && k.on == On::Show);
+        self.show_rows().filter(move |row| common(row))
     }
 
     /// Names of the parts, in the order of the rows.
@@ -117,7 +125,7 @@ fn text(data: &Data) -> String {
          against a truth that traces every pixel many times over. Made by <code>cargo lab accuracy</code>; all \
          figures are in <a href=\"study.csv\">study.csv</a> and <a href=\"resolution.csv\">resolution.csv</a>.</p>\n\
          <nav><a href=\"#presets\">Presets</a><a href=\"#knobs\">Knobs</a><a href=\"#size\">Size</a>\
-         <a href=\"#pictures\">Pictures</a><a href=\"#how\">How it was measured</a></nav>\n\
+         <a href=\"#numbers\">f32 and f64</a><a href=\"#pictures\">Pictures</a><a href=\"#how\">How it was measured</a></nav>\n\
          <h2 id=\"presets\">Presets and the front</h2>\n\
          <p>Lower is closer to the truth, further left is faster. The dashed line joins what no other setting \
          beats in both; its labels name the knob and the position. Small dots: the preset {BASE} with one knob \
@@ -125,6 +133,11 @@ fn text(data: &Data) -> String {
     );
     t += &image("front.svg", "Error over time of all settings, mean of all parts");
     t += &table("preset", &averaged(data.of("preset")), BASE);
+    t += &format!(
+        "<p>How near the presets are to the front: what of all that was measured, presets or {BASE} with one knob \
+         turned, is fastest at no more than a preset's error, and most exact in no more than its time.</p>\n"
+    );
+    t += &choice(data);
     t += "<p>By the root mean square error in linear light, and by flicker:</p>\n";
     t += &image("front-rmse.svg", "Root mean square error over time");
     t += &image("front-flicker.svg", "Flicker over time");
@@ -138,10 +151,11 @@ fn text(data: &Data) -> String {
     t += "Thin bars in the plots: quartiles of the times.</p>\n";
     for knob in data.knobs.iter().filter(|k| k.name != "preset") {
         t += &format!(
-            "<h3 id=\"{}\">{}</h3>\n<p>{}</p>\n",
+            "<h3 id=\"{}\">{}</h3>\n<p>{} {}</p>\n",
             knob.name,
             knob.title,
-            knob.words.replace('`', "")
+            knob.words.replace('`', ""),
+            knob.on.words()
         );
         let settings = averaged(data.of(knob.name));
         if settings.is_empty() {
@@ -162,6 +176,15 @@ fn text(data: &Data) -> String {
           <p>The middle frame of each part. An exponent of 1 would be in step with the number of pixels; the \
           coarsest cell doubles over 720 and over 1440 lines.</p>\n";
     t += &image("resolution.svg", "Time and rays over the number of pixels");
+    if !data.numbers.is_empty() {
+        t += "<h2 id=\"numbers\">f32 against f64</h2>\n\
+              <p>Each formula on hard cases: the worst error of the textbook's form in f32, of the engine's, and of the \
+              textbook's in f64, and nanoseconds per ray or number in packets. Units are those of \
+              <code>cargo lab numbers</code>: about 1 is what f32 can't but lose. Where the engine's time is under \
+              that of f64, f64 everywhere would cost more and hold less than a form that doesn't cancel.</p>\n";
+        t += &image(crate::numbers::PLOT, "Worst errors of each formula in f32 and f64");
+        t += &commas(&data.numbers);
+    }
     t += "<h2 id=\"pictures\">Pictures and error maps</h2>\n\
           <p>The middle frame of each part at 320x180 px. Maps show FLIP from black (no visible difference) over \
           purple to light yellow (1).</p>\n";
@@ -178,6 +201,46 @@ fn text(data: &Data) -> String {
     t + &how(data) + "</body></html>\n"
 }
 
+/// A table of what stands between commas, the first line its heads.
+fn commas(text: &str) -> String {
+    let row = |(i, line): (usize, &str)| {
+        let kind = if i == 0 { "th" } else { "td" };
+        let cells: String = line.split(',').map(|cell| format!("<{kind}>{cell}</{kind}>")).collect();
+        format!("<tr>{cells}</tr>\n")
+    };
+    format!("<table>{}</table>\n", text.lines().enumerate().map(row).collect::<String>())
+}
+
+/// What nothing beats, beside each preset: how long the front takes to its error, and the error at its time.
+fn choice(data: &Data) -> String {
+    let all = averaged(data.common_rows());
+    let place = |a: &Averaged| (a.mean(Figure::Ms), a.mean(Figure::Flip));
+    let mut t = String::from(
+        "<table><tr><th>preset</th><th>ms</th><th>FLIP</th><th>least ms at this error</th><th>by</th>\
+         <th>least FLIP in this time</th><th>by</th></tr>\n",
+    );
+    for a in all.iter().filter(|a| a.knob == "preset" && place(a).1.is_finite()) {
+        let (ms, flip) = place(a);
+        let name = |a: &Averaged| {
+            if a.knob == "preset" { a.value.clone() } else { format!("{} {}", a.knob, a.value) }
+        };
+        let least = |within: &dyn Fn(&Averaged) -> bool, what: fn((f64, f64)) -> f64| {
+            all.iter().filter(|a| within(a)).min_by(|a, b| what(place(a)).total_cmp(&what(place(b))))
+        };
+        let fast = least(&|a| place(a).1 <= flip, |p| p.0).unwrap_or(a);
+        let exact = least(&|a| place(a).0 <= ms, |p| p.1).unwrap_or(a);
+        t += &format!(
+            "<tr><td>{}</td><td>{ms:.1}</td><td>{flip:.4}</td><td>{:.1}</td><td>{}</td><td>{:.4}</td><td>{}</td></tr>\n",
+            a.value,
+            place(fast).0,
+            name(fast),
+            place(exact).1,
+            name(exact)
+        );
+    }
+    t + "</table>\n"
+}
+
 fn how(data: &Data) -> String {
     let [.., (reference, _)] = Quality::PRESETS;
     let frames = |part: &String| {
@@ -192,9 +255,9 @@ fn how(data: &Data) -> String {
          <p>A modest size, so that the study takes minutes; the plot over sizes tells how to go on from there. \
          Times are processor time, which the machine's other work disturbs little, as medians of passes in \
          which all settings take turns. Rays and steps are counted and don't depend on the machine.</p>\n\
-         <p>The truth is <code>{reference}</code> with 64 samples of every pixel, four times as many as its own, \
+         <p>The truth is <code>{reference}</code> with more samples of every pixel than its own 16, \
          so that <code>{reference}</code> itself has an error; for flicker and for the reflection models it is \
-         <code>{reference}</code>. Presets without edge samples differ from it by the stairs at edges more than by \
+         <code>{reference}</code>, and for the motion of smoke {BASE} on a grid of twice the resolution. Presets without edge samples differ from it by the stairs at edges more than by \
          anything else: the column <i>sampling dB</i> is the PSNR against the same setting with every pixel \
          traced, in display values. Means over parts are geometric for times, counts and errors, so that \
          no part outweighs the others.</p>\n\

@@ -39,9 +39,10 @@ pub fn write(subjects: &[Subject], out: &Path, quick: bool) -> Result<(), String
         progress.step(0.0, &format!("pictures of {}", subject.name));
         let n = subject.frames / 2;
         let path = |what: &str| folder.join(format!("{}-{}.png", subject.name, file_name(what)));
-        let shot = |size, setting: &Setting| {
+        let mut renderer = Renderer::default();
+        let mut shot = |size, setting: &Setting| {
             let mut picture = Picture::new(size);
-            draw(&mut Renderer::default(), subject, n, setting, &mut picture);
+            draw(&mut renderer, subject, n, setting, &mut picture);
             picture
         };
         let truth = shot(SIZE, &truth_setting(Truth::Show, if quick { 15 } else { 63 }));

@@ -20,7 +20,7 @@ pub fn write(data: &Data, out: &Path) -> Result<(), String> {
         let path = out.join(name);
         write_file(&path, text).map_err(|e| format!("{}: {e}", path.display()))
     };
-    let all = averaged(data.show_rows());
+    let all = averaged(data.common_rows());
     save("front.svg", draw(&front_chart("All parts", &all, Figure::Flip, FLIP), (860.0, 520.0)))?;
     for (name, figure, label) in [
         ("front-rmse.svg", Figure::Rmse, "root mean square error in linear light"),

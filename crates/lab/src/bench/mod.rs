@@ -121,6 +121,7 @@ fn path(subject: &Subject, options: &Options, progress: &mut Progress) -> Vec<Ru
         for ((_, quality), run) in options.presets.iter().zip(&mut runs) {
             // The first time round only warms up.
             for warm in [i == 0, false] {
+                subject.lead(&mut renderer, n);
                 let (begin, processor) = (Instant::now(), processor_ms());
                 renderer.frame(&(subject.scene)(n), n, options.size, quality, &mut pixels);
                 if !warm {

@@ -84,13 +84,14 @@ impl Report {
         })
     }
 
-    /// Writes the report, and a plot beside it.
+    /// Writes the report, and tables and a plot beside it.
     pub fn write(&self, path: &Path) -> Result<(), String> {
         let fault = |e: std::io::Error| format!("{}: {e}", path.display());
         if let Some(folder) = path.parent().filter(|f| !f.as_os_str().is_empty()) {
             create_dir_all(folder).map_err(fault)?;
         }
         write(path, format!("{:#}\n", self.json())).map_err(fault)?;
+        write(path.with_extension("md"), self.text().trim_start()).map_err(fault)?;
         write(path.with_extension("svg"), page(&self.charts(), 2, (560.0, 340.0))).map_err(fault)
     }
 
@@ -155,7 +156,7 @@ impl Report {
         }
         let names: Vec<&str> = Phase::ALL.iter().map(|p| p.1).collect();
         t += &format!(
-            "\nWhere the time goes at the default preset, ms of processor time on one thread; idle is of {} threads\n\n",
+            "\nWhere the time goes at the default preset, ms of processor time on one thread, in frames in which smoke takes a step, every other one; idle is of {} threads\n\n",
             self.threads
         );
         t += &format!(
@@ -230,7 +231,7 @@ mod tests {
             }],
             phases: vec![Phases {
                 part: "mirror".into(),
-                spent: vec![1.0; Phase::ALL.len()],
+                spent: vec![0.75; Phase::ALL.len()],
                 processor: 6.5,
                 one: 7.0,
                 all: 4.0,

@@ -20,6 +20,8 @@ use std::time::Instant;
 
 /// Cases of each formula, unless told.
 const CASES: u32 = 1_000_000;
+/// Streams of random numbers that they are drawn from: what one of them misses may be in the next.
+const STREAMS: usize = 8;
 /// Arguments that a timing runs over, how often, and the passes of which the fastest counts.
 const TIMED: u32 = 1024;
 const ROUNDS: u32 = 8;
@@ -84,11 +86,11 @@ fn certain(kernel: &Kernel, x: &Arguments<f32>, hit: bool, nearest: f64) -> bool
 }
 
 fn measure(kernel: &'static Kernel, cases: u32) -> Row {
-    let mut random = Random::new(4000);
     let mut errors = [const { Vec::new() }; 3];
     let mut columns: [Column; 3] = Default::default();
-    for _ in 0..cases {
-        let x = (kernel.draw)(&mut random);
+    let mut streams: [Random; STREAMS] = std::array::from_fn(|i| Random::new(4000 + 100 * i as u32));
+    for case in 0..cases {
+        let x = (kernel.draw)(&mut streams[case as usize % STREAMS]);
         let exact = (kernel.truth)(&x, 0.0);
         if exact.is_infinite() {
             continue;
@@ -148,6 +150,20 @@ fn time(kernel: &Kernel) -> [f64; 3] {
         fastest(&narrow, 8, kernel.ours_packet),
         fastest(&wide, 4, kernel.wide_packet),
     ]
+}
+
+/// Names of the files of [`write_study`].
+pub const TABLE: &str = "numbers.csv";
+pub const PLOT: &str = "numbers.svg";
+
+/// Measures all formulas on so many cases, for a page of another study: a table and the plot in its folder.
+pub fn write_study(cases: u32, folder: &std::path::Path) -> Result<(), String> {
+    let rows: Vec<Row> = cases::all().map(|kernel| measure(kernel, cases)).collect();
+    for (name, text) in [(TABLE, report::csv(&rows)), (PLOT, plot::picture(&rows))] {
+        let path = folder.join(name);
+        std::fs::write(&path, text).map_err(|e| format!("{}: {e}", path.display()))?;
+    }
+    Ok(())
 }
 
 /// Runs the command with the arguments after `numbers`: how many cases, and where to write.

@@ -79,6 +79,28 @@ pub fn cone<R: Real>(x: &Arguments<R>) -> R {
     t0.min(t1).min(t0)
 }
 
+/// The same, and the heights of the ends.
+pub fn capped_cone<R: Real>(x: &Arguments<R>) -> R {
+    let (d, f, a) = (vector(x, 3), sub(vector(x, 0), vector(x, 6)), vector(x, 9));
+    let cos2 = R::of(1.0) / (R::of(1.0) + square(x[12]));
+    let (da, fa) = (dot(d, a), dot(f, a));
+    let (t0, t1) = roots(da * da - cos2 * dot(d, d), da * fa - cos2 * dot(d, f), fa * fa - cos2 * dot(f, f));
+    let nan = R::of(f64::NAN);
+    let on_side = |t: R| {
+        let h = fa + t * da;
+        (h - x[13]).pick((x[14] - h).pick(t, nan), nan)
+    };
+    let on_cap = |h: R| {
+        let t = (h - fa) / da;
+        let away = [f[0] + d[0] * t - a[0] * h, f[1] + d[1] * t - a[1] * h, f[2] + d[2] * t - a[2] * h];
+        (square(x[12] * h) - dot(away, away)).pick(t, nan)
+    };
+    let all = [on_side(t0), on_side(t1), on_cap(x[13]), on_cap(x[14])];
+    let far = R::of(f64::INFINITY);
+    let best = all.into_iter().fold(far, |best, t| nearest(t, t).min(best));
+    (R::of(3e38) - best).pick(best, nan)
+}
+
 /// Origin, direction, three corners: Möller and Trumbore.
 pub fn triangle<R: Real>(x: &Arguments<R>) -> R {
     let (o, d, a) = (vector(x, 0), vector(x, 3), vector(x, 6));

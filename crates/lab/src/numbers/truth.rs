@@ -74,7 +74,7 @@ pub fn capped_cylinder(x: &Arguments<f32>, skin: f64) -> f64 {
 }
 
 /// Convex where |across| - slope height is not positive: its zeros by bisection either side of the least value.
-pub fn cone(x: &Arguments<f32>, skin: f64) -> f64 {
+fn nappe(x: &Arguments<f32>, skin: f64) -> (f64, f64) {
     let (a, k) = (v(x, 9).normalize(), f64::from(x[12]));
     let apex = v(x, 6) - a * (skin * (1.0 + k * k).sqrt() / k);
     let f = v(x, 0) - apex;
@@ -97,7 +97,7 @@ pub fn cone(x: &Arguments<f32>, skin: f64) -> f64 {
         steps(start, fall.signum()).find(|&t| g(t) < 0.0).unwrap_or(start)
     };
     if g(least) > 0.0 {
-        return f64::NAN;
+        return MISS;
     }
     let zero = |sign: f64| {
         let Some(mut outer) = steps(least, sign).find(|&t| g(t) > 0.0) else { return sign * INF };
@@ -111,7 +111,19 @@ pub fn cone(x: &Arguments<f32>, skin: f64) -> f64 {
         }
         inner
     };
-    first((zero(-1.0), zero(1.0)))
+    (zero(-1.0), zero(1.0))
+}
+
+pub fn cone(x: &Arguments<f32>, skin: f64) -> f64 {
+    first(nappe(x, skin))
+}
+
+pub fn capped_cone(x: &Arguments<f32>, skin: f64) -> f64 {
+    let a = v(x, 9).normalize();
+    let f = (v(x, 0) - v(x, 6)).dot(a);
+    let slab = slab_of(f, v(x, 3).dot(a), f64::from(x[13]) - skin, f64::from(x[14]) + skin);
+    let side = nappe(x, skin);
+    first((side.0.max(slab.0), side.1.min(slab.1)))
 }
 
 pub fn triangle(x: &Arguments<f32>, skin: f64) -> f64 {

@@ -20,38 +20,38 @@ use super::x86::{Walker, fact, mix};
 ///
 /// Found by a random search.
 #[rustfmt::skip]
-static SEEN: [u8; 110] = [
+static SEEN: [u8; 102] = [
     32, 33, 34, 35, LAST + 36,
     32, LAST + 56,
     32, LAST + 33,
-    32, 33, 35, 36, 37, 38, LAST + 39,
-    0, 1, 2, LAST + 48,
-    LAST + 4,
-    0, 1, 2, 8, 10, 17, 18, 25, LAST + 26,
-    1, 8, 9, 36, 37, 48, LAST + 49,
-    1, 48, LAST + 49,
     33, LAST + 34,
-    9, LAST + 48,
-    LAST + 56,
-    35, 39, LAST + 56,
+    0, 1, LAST + 48,
+    LAST + 49,
+    0, 1, 2, 17, LAST + 18,
+    1, 9, 36, 37, LAST + 48,
+    1, 48, LAST + 49,
+    34, LAST + 35,
+    9, 48, LAST + 49,
+    21, LAST + 56,
+    39, LAST + 58,
     4, LAST + 48,
-    4, 11, 48, LAST + 49,
-    9, 32, LAST + 57,
-    0, 1, 2, 4, 8, 9, 10, LAST + 48,
+    0, 4, LAST + 48,
+    16, LAST + 32,
+    0, 1, 8, 9, 10, LAST + 48,
     0, 1, 2, 9, LAST + 11,
-    4, 6, 12, 38, 43, LAST + 49,
-    0, 48, LAST + 49,
-    LAST + 33,
-    0, 1, 2, 8, LAST + 49,
-    12, LAST + 48,
-    9, 11, 19, LAST + 32,
-    LAST + 5,
+    1, 6, 25, 38, 43, 48, LAST + 49,
+    48, LAST + 58,
+    32, LAST + 50,
+    0, 1, 8, 48, LAST + 49,
+    1, 12, LAST + 48,
+    9, 11, 17, 19, LAST + 32,
+    LAST + 4,
     6, 48, LAST + 49,
-    0, 1, 9, 17, 25, LAST + 48,
-    LAST + 48,
+    0, 1, 9, 16, 17, 25, LAST + 48,
+    5, 48, LAST + 49,
     1, 7, LAST + 48,
-    LAST + 32,
-    17, 48, LAST + 49,
+    32, LAST + 48,
+    9, 17, LAST + 48,
     LAST + 51,
 ];
 /// Marks the last fact of a context.
@@ -80,19 +80,19 @@ const MIXERS: usize = 5;
 /// Sets of weights of each mixer.
 const SETS: usize = 2048;
 /// Slots of all contexts together, as a power of two.
-const SLOT_BITS: u32 = 24;
+const SLOT_BITS: u32 = 25;
 
 /// Weight of each opinion at the start.
 const FIRST_WEIGHT: f32 = 0.03;
 /// Learning rate of the mixers in the long run, and what is added to it at the start.
-const RATE: f32 = 0.0044;
+const RATE: f32 = 0.004;
 const EARLY_RATE: f32 = 0.006;
 /// That of the mixer of mixers.
-const TRUST_RATE: f32 = 0.002;
+const TRUST_RATE: f32 = 0.0008;
 /// A slot's probability stops adapting faster than `1 / SETTLED` after that many bits.
 const SETTLED: u8 = 107;
 /// Shares by which probabilities move, in 15 bits.
-const MEANING_SHARE: i32 = 330;
+const MEANING_SHARE: i32 = 280;
 const RUN_SHARE: i32 = 512;
 
 /// What a context remembers of one bit position, or of the byte that came last.
@@ -134,8 +134,10 @@ pub struct Model {
     position: u32,
     opinions: [Four; CONTEXTS + 1],
     contexts: [Context; CONTEXTS],
-    /// How far the mixers' own weights are from equal ones, by the part of the instruction.
+    /// How far the mixers' own weights are from equal ones, by the part of the instruction, and by it and the
+    /// bits of the byte so far.
     trust: [[f32; MIXERS]; 64],
+    trust_so_far: [[f32; MIXERS]; 64 << 8],
     /// How far a slot's probability moves, by the number of bits seen.
     shares: [u16; 256],
     stretch: Stretch,
@@ -173,7 +175,13 @@ impl Model {
         let facts = &self.walker.facts;
         let state = self.walker.part as usize | usize::from(self.walker.left.min(7)) << 3;
         let follower = facts[fact::OPCODE + fact::RECORD] & 1023 | u32::from(state == 0) << 10;
-        let mut sets = [state as u32 * 8, 0, facts[fact::OPCODE] & 1023, facts[fact::BYTES] & 255, follower];
+        let mut sets = [
+            state as u32 * 8,
+            0,
+            facts[fact::OPCODE] & 1023,
+            facts[fact::BYTES + 2] & 255 | (state as u32 & 7) << 8,
+            follower,
+        ];
         let rate = RATE + EARLY_RATE / (1.0 + self.position as f32 * (1.0 / 4000.0));
         self.position += 1;
         let trust = &mut self.trust[state & 63];
@@ -186,7 +194,7 @@ impl Model {
                 half = 1;
                 for context in &mut self.contexts {
                     context.half = mix(context.hash, byte);
-                    fetch(&self.slots, context.half >> 8);
+                    fetch(&self.slots, place(context.half, 0));
                 }
             }
             for (context, opinions) in self.contexts.iter_mut().zip(&mut self.opinions) {
@@ -218,11 +226,12 @@ impl Model {
                 sets[1] |= first.times.min(7) * 256;
             }
 
+            let so_far = &mut self.trust_so_far[(state & 63) << 8 | byte as usize & 255];
             let mut mixed = [0.0; MIXERS];
             let mut mean = 0.0;
             for i in 0..MIXERS {
                 mixed[i] = dot(&self.weights[i][sets[i] as usize & (SETS - 1)], &self.opinions);
-                mean += mixed[i] * (trust[i] + 1.0 / MIXERS as f32);
+                mean += mixed[i] * (trust[i] + so_far[i] + 1.0 / MIXERS as f32);
             }
             let said = squash(mean);
             // SAFETY: the product is no less than 0 and less than 65536.
@@ -232,6 +241,7 @@ impl Model {
             let error = (bit as f32 - said) * TRUST_RATE;
             for i in 0..MIXERS {
                 trust[i] += error * mixed[i];
+                so_far[i] += error * mixed[i];
                 let error = bit as f32 - squash(mixed[i]);
                 // A mixer that is nearly right has little to learn, and time is short.
                 if error.abs() > 0.02 {
@@ -300,7 +310,7 @@ impl Model {
 
 /// Where a context's slot for this part of the byte is.
 fn place(hash: u32, part: u32) -> usize {
-    (hash >> 8 ^ part & 15) as usize
+    (hash >> 7 ^ part & 15) as usize
 }
 
 /// That slot, emptied if it was another context's.
@@ -315,12 +325,12 @@ fn claim(slots: &mut [Slot; 1 << SLOT_BITS], hash: u32, part: u32) -> &mut Slot 
 
 /// Tells the processor that a row of slots will be read soon, so that it needn't wait for one after
 /// the other.
-fn fetch(slots: &[Slot; 1 << SLOT_BITS], at: u32) {
+fn fetch(slots: &[Slot; 1 << SLOT_BITS], at: usize) {
     #[cfg(target_arch = "x86_64")]
     // SAFETY: reads nothing; all x86-64 processors have the instruction.
     unsafe {
         use core::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
-        let row = &raw const slots[(at & 0xff_fff0) as usize];
+        let row = &raw const slots[at & !15];
         _mm_prefetch::<_MM_HINT_T0>(row.cast());
         _mm_prefetch::<_MM_HINT_T0>(row.wrapping_add(15).cast());
     }

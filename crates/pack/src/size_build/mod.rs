@@ -89,7 +89,7 @@ pub fn build(root: &Path, output: &Path) -> Result<Built, Error> {
         .args(["build", "--quiet", "--locked", "--package=luc", "--bin=luc", "--profile=intro"])
         .arg("--message-format=json-render-diagnostics")
         .stderr(Stdio::inherit())
-        .args(["--no-default-features", "--features=sound,smoke", "--target", workspace::TARGET])
+        .args(["--no-default-features", "--features=sound,smoke,cost", "--target", workspace::TARGET])
         .args(["-Zbuild-std=std,panic_abort", "-Zbuild-std-features=optimize_for_size"])
         .arg("--target-dir")
         .arg(&target_directory)

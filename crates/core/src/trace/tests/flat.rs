@@ -21,7 +21,7 @@ fn crossing(ray: &Line, p: DVec3, n: DVec3, skin: f64) -> Option<Inside> {
     (skin > 0.0).then_some(Inside { t: [f64::NEG_INFINITY, f64::INFINITY], part: [0; 2] })
 }
 
-fn plane_truth(s: &Plane, ray: &Line, [skin, _]: [f64; 2]) -> Option<Inside> {
+fn plane_truth(s: &Plane, ray: &Line, [skin, ..]: [f64; 3]) -> Option<Inside> {
     let (p, n) = (s.point.as_dvec3(), s.normal.as_dvec3().normalize());
     let at = crossing(ray, p, n, skin)?;
     let along = n.dot(ray.d);
@@ -36,7 +36,7 @@ fn judge_plane(tally: &mut Tally, s: &Plane, rays: &Rays8) {
 }
 
 /// Edges as seen along the ray: the ray is inside if it lies on the same side of all three.
-fn triangle_truth(s: &Triangle, ray: &Line, [skin, _]: [f64; 2]) -> Option<Inside> {
+fn triangle_truth(s: &Triangle, ray: &Line, [skin, ..]: [f64; 3]) -> Option<Inside> {
     let corners = s.corners.map(Vec3::as_dvec3);
     let [a, b, c] = corners;
     let n = (b - a).cross(c - a).normalize_or_zero();

@@ -19,6 +19,9 @@ fn double(k: i32) -> f64 {
 
 const INF: f64 = f64::INFINITY;
 
+/// Streams of random numbers that each law draws from: what one of them misses may be in the next.
+const STREAMS: u32 = 6;
+
 /// A ray along and across an axis.
 struct Axial {
     f: (f64, DVec3),
@@ -100,14 +103,14 @@ impl Axial {
     }
 }
 
-fn cylinder_truth(s: &Cylinder, ray: &Line, [skin, ends]: [f64; 2]) -> Option<Inside> {
+fn cylinder_truth(s: &Cylinder, ray: &Line, [skin, ends, _]: [f64; 3]) -> Option<Inside> {
     let a = Axial::new(ray, s.base.as_dvec3(), s.axis.as_dvec3().normalize());
     let length = f64::from(s.length);
     let lo = if length < INF { -ends } else { -INF };
     a.cut(a.cylinder(f64::from(s.radius) + skin), a.slab(lo, length + ends))
 }
 
-fn cone_truth(s: &Cone, ray: &Line, [skin, ends]: [f64; 2]) -> Option<Inside> {
+fn cone_truth(s: &Cone, ray: &Line, [skin, ends, slope]: [f64; 3]) -> Option<Inside> {
     let k = f64::from(s.slope);
     let axis = s.axis.as_dvec3().normalize();
     let [lo, hi] = s.range.map(f64::from);
@@ -115,7 +118,7 @@ fn cone_truth(s: &Cone, ray: &Line, [skin, ends]: [f64; 2]) -> Option<Inside> {
     let lo = if lo > 0.0 { lo - ends } else { -INF };
     // The slope is rounded too.
     let reach = (plain.f.0 * plain.f.0 + plain.f.1.length_squared()).sqrt() + 1e-30;
-    let wider = k * (1.0 + (skin / reach).clamp(-8.0 * U, 8.0 * U));
+    let wider = k * (1.0 + (slope / reach).clamp(-8.0 * U, 8.0 * U));
     let grown = Axial::new(ray, s.apex.as_dvec3() - axis * (skin * (1.0 + k * k).sqrt() / k), axis);
     plain.cut(grown.cone(wider), plain.slab(lo, hi + ends))
 }
@@ -202,29 +205,32 @@ fn a_ray_in_a_caps_plane_hits_the_closed_bar() {
 
 #[test]
 fn random_cylinders() {
-    for infinite in [false, true] {
-        let mut random = Random::new(10 + u32::from(infinite));
-        let mut tally = Tally::new(if infinite { "infinite cylinder" } else { "finite cylinder" });
-        for _ in 0..25_000 {
-            let r = random.size(-14, 14);
-            let length = r * random.size(-7, 9);
-            let axis = random.direction();
-            let s = bar(random.vector(-3, 12) * r, axis, r, if infinite { f32::INFINITY } else { length });
-            let rays = packet(|| {
-                let any = random.direction();
-                let n = (any - axis * any.dot(axis)).normalize_or(axis.any_orthogonal_vector());
-                let lift = 1.0 + if random.one_in(2) { random.signed(-20, 1) } else { 0.0 };
-                let height = match random.bits() % 4 {
-                    0 => 0.0,
-                    1 => length,
-                    _ => length * random.range(-0.1, 1.1),
-                };
-                let inwards = if random.one_in(3) { random.range(0.0, 1.0) } else { 1.0 };
-                random.ray(s.base + axis * height + n * (r * lift * inwards), n, axis, r)
-            });
-            judge_cylinder(&mut tally, &s, &rays);
+    for kind in 0..2 {
+        let mut tally = Tally::new(["finite cylinder", "infinite cylinder"][kind as usize]);
+        for stream in 0..STREAMS {
+            let mut random = Random::new(1000 * stream + 10 + kind);
+            for _ in 0..8_000 {
+                let r = random.size(-14, 14);
+                let length = r * random.size(-7, 9);
+                let axis = random.direction();
+                let base = random.vector(-3, 12) * r;
+                let s = bar(base, axis, r, if kind == 1 { f32::INFINITY } else { length });
+                let rays = packet(|| {
+                    let any = random.direction();
+                    let n = (any - axis * any.dot(axis)).normalize_or(axis.any_orthogonal_vector());
+                    let lift = 1.0 + if random.one_in(2) { random.signed(-20, 1) } else { 0.0 };
+                    let height = match random.bits() % 4 {
+                        0 => 0.0,
+                        1 => length,
+                        _ => length * random.range(-0.1, 1.1),
+                    };
+                    let inwards = if random.one_in(3) { random.range(0.0, 1.0) } else { 1.0 };
+                    random.ray(s.base + axis * height + n * (r * lift * inwards), n, axis, r)
+                });
+                judge_cylinder(&mut tally, &s, &rays);
+            }
         }
-        assert!(tally.hits > 60_000, "{} hits", tally.hits);
+        assert!(tally.hits > 100_000, "{} hits", tally.hits);
         tally.finish(4.0);
     }
 }
@@ -299,38 +305,92 @@ fn rays_through_the_tip_hit() {
 #[test]
 fn random_cones() {
     for kind in 0..4 {
-        let mut random = Random::new(30 + kind);
         let names = ["infinite cone", "pointed cone", "frustum, closed", "frustum, open"];
         let mut tally = Tally::new(names[kind as usize]);
-        for _ in 0..16_000 {
-            let h = random.size(-14, 14);
-            let axis = random.direction();
-            let k = random.size(-7, 4);
-            let from = if kind < 2 { 0.0 } else { h * random.range(0.0, 0.99) };
-            let caps = match kind {
-                3 => [[false, false], [false, true], [true, false]][random.bits() as usize % 3],
-                _ => [true; 2],
-            };
-            let range = [from, if kind == 0 { f32::INFINITY } else { h }];
-            let s = frustum(random.vector(-3, 10) * h, axis, k, range, caps);
-            let rays = packet(|| {
-                let any = random.direction();
-                let out = (any - axis * any.dot(axis)).normalize_or(axis.any_orthogonal_vector());
-                let height = match random.bits() % 5 {
-                    0 => from,
-                    1 => h,
-                    2 => h * random.signed(-20, 0),
-                    _ => from + (h - from) * random.range(-0.1, 1.1),
+        for stream in 0..STREAMS {
+            let mut random = Random::new(1000 * stream + 30 + kind);
+            for _ in 0..4_000 {
+                let h = random.size(-14, 14);
+                let axis = random.direction();
+                let k = random.size(-7, 4);
+                let from = if kind < 2 { 0.0 } else { h * random.range(0.0, 0.99) };
+                let caps = match kind {
+                    3 => [[false, false], [false, true], [true, false]][random.bits() as usize % 3],
+                    _ => [true; 2],
                 };
-                let lift = 1.0 + if random.one_in(2) { random.signed(-20, 1) } else { 0.0 };
-                let inwards = if random.one_in(3) { random.range(0.0, 1.0) } else { 1.0 };
-                let target = s.apex + axis * height + out * (height * k * lift * inwards);
-                let along = if random.one_in(2) { axis } else { (axis + out * k).normalize() };
-                random.ray(target, (out - axis * k).normalize(), along, h * k.min(1.0))
-            });
-            judge_cone(&mut tally, &s, &rays);
+                let range = [from, if kind == 0 { f32::INFINITY } else { h }];
+                let s = frustum(random.vector(-3, 10) * h, axis, k, range, caps);
+                let rays = packet(|| {
+                    let any = random.direction();
+                    let out = (any - axis * any.dot(axis)).normalize_or(axis.any_orthogonal_vector());
+                    let height = match random.bits() % 5 {
+                        0 => from,
+                        1 => h,
+                        2 => h * random.signed(-20, 0),
+                        _ => from + (h - from) * random.range(-0.1, 1.1),
+                    };
+                    let lift = 1.0 + if random.one_in(2) { random.signed(-20, 1) } else { 0.0 };
+                    let inwards = if random.one_in(3) { random.range(0.0, 1.0) } else { 1.0 };
+                    let target = s.apex + axis * height + out * (height * k * lift * inwards);
+                    let along = if random.one_in(2) { axis } else { (axis + out * k).normalize() };
+                    random.ray(target, (out - axis * k).normalize(), along, h * k.min(1.0))
+                });
+                judge_cone(&mut tally, &s, &rays);
+            }
         }
         assert!(tally.hits > 50_000, "{} hits", tally.hits);
         tally.finish(4.0);
     }
+}
+
+/// Within a few roundings of the plane of an end: does the ray rise through it, or fall?
+#[test]
+fn rays_along_an_end() {
+    let mut bars = Tally::new("along a bar's end");
+    let mut hats = Tally::new("along a cone's end");
+    for stream in 0..STREAMS {
+        let mut random = Random::new(1000 * stream + 50);
+        for _ in 0..2_000 {
+            let (h, axis, k) = (random.size(-8, 8), random.direction(), random.size(-4, 4));
+            let base = random.vector(-3, 6) * h;
+            let bar = bar(base, axis, h * k, h);
+            let hat = frustum(base, axis, k, [0.0, h], [true; 2]);
+            let rays = packet(|| {
+                let any = random.direction();
+                let d = (any - axis * any.dot(axis)).normalize_or(axis.any_orthogonal_vector());
+                let side = crate::math::cross(d, axis) * (h * k * random.range(-0.9, 0.9));
+                let end = base + axis * if random.one_in(4) { 0.0 } else { h };
+                (end + side - d * (h * k * random.signed(-6, 6)), d + axis * random.signed(-28, -22))
+            });
+            judge_cylinder(&mut bars, &bar, &rays);
+            judge_cone(&mut hats, &hat, &rays);
+        }
+    }
+    assert!(bars.hits.min(hats.hits) > 10_000, "{} {} hits", bars.hits, hats.hits);
+    bars.finish(4.0);
+    hats.finish(4.0);
+}
+
+/// Within a few roundings of a line of the side, through the tip: on which side of it is the ray?
+#[test]
+fn rays_along_the_side_through_the_tip() {
+    let mut tally = Tally::new("along a cone's side");
+    for stream in 0..STREAMS {
+        let mut random = Random::new(1000 * stream + 60);
+        for _ in 0..2_000 {
+            let (h, axis, k) = (random.size(-8, 8), random.direction(), random.size(-6, 4));
+            let end = if random.one_in(2) { f32::INFINITY } else { h };
+            let s = frustum(random.vector(-3, 6) * h, axis, k, [0.0, end], [true; 2]);
+            let rays = packet(|| {
+                let any = random.direction();
+                let out = (any - axis * any.dot(axis)).normalize_or(axis.any_orthogonal_vector());
+                let d = (axis + out * k).normalize() + random.direction() * random.signed(-28, -22);
+                let d = if random.one_in(2) { d } else { -d };
+                (s.apex + d * (h * random.signed(-6, 6)), d)
+            });
+            judge_cone(&mut tally, &s, &rays);
+        }
+    }
+    assert!(tally.hits > 10_000, "{} hits", tally.hits);
+    tally.finish(4.0);
 }

@@ -11,7 +11,7 @@ fn ball(centre: Vec3, radius: f32) -> Sphere {
 }
 
 /// Half a chord either way of the point nearest to the centre.
-fn truth(s: &Sphere, ray: &Line, [skin, _]: [f64; 2]) -> Option<Inside> {
+fn truth(s: &Sphere, ray: &Line, [skin, ..]: [f64; 3]) -> Option<Inside> {
     let f = ray.o - s.centre.as_dvec3();
     let r = f64::from(s.radius) + skin;
     let nearest = -f.dot(ray.d) / ray.d.length_squared();

@@ -6,6 +6,7 @@ use crate::math::scalar::pow;
 use crate::quality::Quality;
 use crate::scene::{Edit, Field, Join, Material, Node, Scene};
 use crate::trace::check::{Random, packet, splat as alone};
+use crate::trace::walk::LEVEL;
 use crate::trace::{nearest, surface};
 use glam::DVec3;
 

@@ -97,6 +97,28 @@ pub const KERNELS: &[Kernel] = &[
         }
     ),
     kernel!(
+        "capped cone",
+        capped_cone,
+        Measure::Score(|x| 2.0 * distance(x, 0, 6) + f64::from(x[14])),
+        |random| {
+            let (slope, height) = (random.size(-7, 3), random.range(0.9, 2.1));
+            let across = slope * height * if random.one_in(2) { 1.0 } else { random.range(0.0, 1.0) };
+            let (h, place, axis, (o, d)) = about_axis(random, across, height);
+            list([&o.to_array(), &d.to_array(), &place.to_array(), &axis.to_array(), &[slope, h, 2.0 * h]])
+        },
+        truth::capped_cone,
+        |x| {
+            let (apex, axis) = (v3(x, 6).into(), v3(x, 9).into());
+            some(kernels::capped_cone(&ray(x), apex, axis, x[12], [x[13], x[14]]).map(|c| c.first()))
+        },
+        |x| {
+            let s = shape(x);
+            let (apex, axis, range) = (v3(&s, 6), v3(&s, 9), [s[13], s[14]]);
+            let cone = Cone { apex, axis, slope: s[12], range, caps: [true; 2], material: 0 };
+            trace::cone(&rays(x), &cone).first().0
+        }
+    ),
+    kernel!(
         "triangle",
         triangle,
         Measure::Score(|x| distance(x, 0, 6).max(distance(x, 0, 9)).max(distance(x, 0, 12))),
@@ -203,7 +225,7 @@ pub const KERNELS: &[Kernel] = &[
             let [a, b, c, d] = [x[0], x[1], x[2], x[3]].map(f64::from);
             a * b - c * d
         },
-        |x| scalar(lanes::difference_of_products(splat(x[0]), splat(x[1]), splat(x[2]), splat(x[3]))),
+        |x| kernels::difference_of_products(x[0], x[1], x[2], x[3]),
         |x| lanes::difference_of_products(x[0], x[1], x[2], x[3])
     ),
 ];
