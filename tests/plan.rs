@@ -3,10 +3,11 @@
 use luc::show;
 use luc_core::counters::Counter;
 use luc_core::features;
+use luc_core::math::Vec3;
 use luc_core::plan::{Plan, warnings};
 use luc_core::quality::Quality;
 use luc_core::render::Renderer;
-use luc_core::scene::{Effect, Kind, Material, Scene, Sphere};
+use luc_core::scene::{Effect, Kind, Light, LightKind, Material, Plane, Scene, Sphere};
 
 const SIZE: (u32, u32) = (320, 180);
 
@@ -189,4 +190,33 @@ fn the_size_build_has_what_the_show_calls_for_and_nothing_else() {
         called,
         "features of luc-core in the dependencies of Cargo.toml (left) and what the plans call for (right)"
     );
+}
+
+#[test]
+fn a_fill_light_shines_through_bodies_and_casts_no_ray() {
+    let quality = Quality::named("high").unwrap();
+    let plane = Plane { point: Vec3::ZERO, normal: Vec3::Y, reach: f32::INFINITY, material: 0 };
+    let ball = Sphere { centre: Vec3::Y * 5.0, radius: 1.0, material: 0, blend: 0.0 };
+    let light = |kind| Light { position: Vec3::Y * 8.0, colour: Vec3::splat(40.0), kind };
+    let draw = |kind: LightKind, spheres: Vec<Sphere>| {
+        let mut scene = Scene { planes: vec![plane], spheres, lights: vec![light(kind)], ..Scene::default() };
+        scene.materials.push(Material { colour: Vec3::splat(0.5), ..Material::default() });
+        // Straight down from under the ball.
+        scene.camera.position = Vec3::new(0.0, 3.0, 0.1);
+        scene.camera.target = Vec3::ZERO;
+        let mut pixels = vec![0; (SIZE.0 * SIZE.1) as usize];
+        let mut renderer = Renderer::default();
+        renderer.frame(&scene, 0, SIZE, &quality, &mut pixels);
+        let count = |counter| renderer.counters.get(counter);
+        let counts = (count(Counter::ShadowRays) > 0, count(Counter::FillLights) > 0);
+        let plan = Plan::of(&scene, &quality);
+        (pixels, counts, (plan.names(Counter::ShadowRays), plan.names(Counter::FillLights)))
+    };
+    let (open, ..) = draw(LightKind::Point, vec![]);
+    let (hidden, counts, named) = draw(LightKind::Point, vec![ball]);
+    assert_eq!([counts, named], [(true, false); 2]);
+    assert!(hidden != open, "the ball hides the lamp");
+    let (filled, counts, named) = draw(LightKind::Fill, vec![ball]);
+    assert_eq!([counts, named], [(false, true); 2]);
+    assert!(filled == open);
 }

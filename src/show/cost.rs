@@ -75,8 +75,8 @@ const RIGHT: Place = Place { normal: Vec2::new(1.0, -SLANT), from: 0.0, over: 1e
 /// The drawing: gold in place of rose, few colours, lines of light, the cells; and a dark band below.
 static DRAWING: [Effect; 5] = [
     Effect { place: RIGHT, ..Effect::new(Kind::Tint { colour: v(1.9, 0.8, 0.2), strength: 0.5 }) },
-    Effect { place: RIGHT, amount: 0.75, ..Effect::new(Kind::Levels(v(7.0, 7.0, 7.0))) },
     Effect { place: RIGHT, ..Effect::new(Kind::Edges { strength: 5.0, colour: v(0.3, 0.42, 0.62) }) },
+    Effect { place: RIGHT, amount: 0.3, ..Effect::new(Kind::Levels(v(7.0, 7.0, 7.0))) },
     Effect { place: RIGHT, ..Effect::new(Kind::Cells { shade: 0.6, colour: v(0.07, 0.06, 0.18) }) },
     Effect {
         place: Place { normal: Vec2::NEG_Y, from: 0.32, over: 0.28 },
@@ -147,6 +147,7 @@ pub fn scene(frame: u64) -> Scene {
     let position = v(1.9, 2.4, 7.2 + t / 24.0);
     s.camera = Camera { position, target: v(-1.1, 4.5, -12.0), roll: degrees(-2.0), fov: degrees(52.0) };
     s.meshes = cathedral(20.0, 8, false);
+    s.lights[1].kind = LightKind::Fill;
     s.effects = DRAWING.to_vec();
     for effect in &mut s.effects[..4] {
         effect.place.from = x;

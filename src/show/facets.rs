@@ -203,7 +203,7 @@ pub fn cathedral(t: f32, bays: usize, rose: bool) -> Assembly {
         let turned = Mat3::from_cols(v(cos, 0.0, sin), Vec3::Y, v(-sin, 0.0, cos));
         for (i, (mesh, (_, material, delay, from))) in meshes.iter().zip(RULES).take(5).enumerate() {
             let size = growth(t - began - delay);
-            if size > 0.02 {
+            if size > 0.02 && (rose || i > 0) {
                 let origin = v(side * SIDE, from * (1.0 - size), 4.0 - BAY * bay as f32);
                 let mirrored = Mat3::from_diagonal((v(side, 1.0, way) * size).into());
                 let grown = if i == FOOT { mirrored * turned } else { mirrored };

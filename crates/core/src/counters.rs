@@ -55,6 +55,7 @@ counters! {
     Phong "Phong highlights",
     CookTorrance "Cook-Torrance highlights",
     Ggx "GGX highlights",
+    FillLights "evaluations of fill lights",
     PointLights "evaluations of small lights",
     TextureLookups "texture lookups",
     Cells "cells of textures",

@@ -28,6 +28,8 @@ pub const BOUNCES: bool = cfg!(feature = "bounces");
 pub const ROUGH: bool = cfg!(feature = "rough");
 /// Shadows of shining rectangles by several rays.
 pub const SOFT_SHADOWS: bool = cfg!(feature = "soft-shadows");
+/// Lamps in whose light nothing casts a shadow.
+pub const FILL: bool = cfg!(feature = "fill");
 /// Small lights in great number.
 pub const POINTS: bool = cfg!(feature = "points");
 /// Triangle meshes.
@@ -78,7 +80,7 @@ pub const EFFECT_TUBE: bool = cfg!(feature = "effect-tube");
 pub const EFFECT_GRAIN: bool = cfg!(feature = "effect-grain");
 
 /// Each feature with the counter that shows it at work.
-pub const ALL: [(&str, Counter); 31] = [
+pub const ALL: [(&str, Counter); 32] = [
     ("ggx", Counter::Ggx),
     ("bumps", Counter::Bumps),
     ("fields", Counter::FieldSteps),
@@ -90,6 +92,7 @@ pub const ALL: [(&str, Counter); 31] = [
     ("bounces", Counter::ScatterRays),
     ("rough", Counter::RoughRays),
     ("soft-shadows", Counter::SoftShadowRays),
+    ("fill", Counter::FillLights),
     ("points", Counter::PointLights),
     ("meshes", Counter::NodeVisits),
     ("smooth", Counter::SmoothFacets),

@@ -22,6 +22,7 @@ impl Plan {
         let lamps = !scene.lights.is_empty() || !scene.emitters.is_empty();
         let shows = materials().any(|m| m.diffuse > 0.0 || m.specular.max_element() > 0.0);
         let lit = lamps && shows;
+        let fills = scene.lights.iter().filter(|light| light.kind == LightKind::Fill).count();
         let soft = scene.soft && quality.shadow_samples > 1 && !scene.emitters.is_empty();
         let points = !scene.points.is_empty() && shows;
         let shines = lit || points;
@@ -70,12 +71,13 @@ impl Plan {
             (Counter::EmitterTests, (mirrors || glass) && !scene.emitters.is_empty()),
             (Counter::DiscTests, !scene.background.discs.is_empty()),
             (Counter::Glows, !scene.background.glows.is_empty()),
-            (Counter::ShadowRays, lit),
+            (Counter::ShadowRays, lit && fills < scene.lights.len() + scene.emitters.len()),
             (Counter::SoftShadowRays, shows && soft),
             (Counter::LightEvaluations, lit),
             (Counter::Phong, shines && scene.shading == Shading::Phong),
             (Counter::CookTorrance, shines && scene.shading == Shading::CookTorrance),
             (Counter::Ggx, shines && scene.shading == Shading::Ggx),
+            (Counter::FillLights, lit && fills > 0),
             (Counter::PointLights, points),
             (Counter::TextureLookups, grain),
             (Counter::Cells, pattern(Pattern::Cells)),

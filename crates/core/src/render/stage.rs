@@ -179,7 +179,7 @@ impl<'a> Stage<'a> {
     /// Shadow rays to a lamp.
     pub fn shadow_rays(&self, lamp: usize) -> u32 {
         let soft = features::SOFT_SHADOWS && self.scene.soft && self.lamps[lamp].is_emitter;
-        if soft { self.quality.shadow_samples } else { 1 }
+        if soft { self.quality.shadow_samples } else { !(features::FILL && self.lamps[lamp].is_fill) as u32 }
     }
 
     /// Mask of the shapes that may show in the square of `side` px at `corner`, see

@@ -53,7 +53,8 @@ impl Cell {
         let last = self.size - 1;
         let (x, y) = (corner.0 + self.x, corner.1 + self.y);
         stage.sides().contains(&side)
-            && (0..4).any(|i| stage.side(x + (i & 1) * last, y + (i >> 1) * last) == side)
+            && (0..if last == 0 { 1 } else { 4 })
+                .any(|i| stage.side(x + (i & 1) * last, y + (i >> 1) * last) == side)
     }
 }
 
@@ -351,8 +352,8 @@ impl Surroundings {
             let position = stage.lamps[lamp].position;
             let faces = known.samples[..4].iter().any(|s| s.normal().dot(position - s.point()) > 0.0);
             let lit = faces && known.samples[..4].iter().all(|s| s.code(lamp) != BLOCKED);
-            // Soft shadows rest on the samples alone.
-            let soft = stage.shadow_rays(lamp) > 1;
+            // Soft shadows rest on the samples alone; a fill light has none.
+            let soft = stage.shadow_rays(lamp) != 1;
             if (self.shadows[lamp] == 0 && meshes.is_empty())
                 || soft
                 || !lit

@@ -7,6 +7,8 @@ use crate::math::{Vec3, cross};
 pub enum LightKind {
     /// Shines evenly in all directions.
     Point,
+    /// As a point, but nothing casts a shadow in its light.
+    Fill,
     /// Shines in a cone: full inside `inner`, none outside `outer` (cosines, inner > outer).
     Spot {
         /// Unit direction of the cone's axis.
@@ -25,7 +27,7 @@ pub struct Light {
     pub position: Vec3,
     /// Intensity, linear RGB times strength.
     pub colour: Vec3,
-    /// Point or spot.
+    /// Point, fill or spot.
     pub kind: LightKind,
 }
 

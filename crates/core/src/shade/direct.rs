@@ -204,6 +204,7 @@ pub fn direct(
             continue;
         }
         counters.add(Counter::LightEvaluations, 8);
+        counters.add(Counter::FillLights, 8 * usize::from(lamp.is_fill));
         let open = F::ONE + code.at_most(zero);
         let mut light = tinted(stage, lamp, code) * (lit & (reach * open / aim.d2));
         if let Some(volume) = stage.volume.filter(|_| features::SMOKE) {

@@ -1,5 +1,6 @@
 //! Lamps as shading sees them: points, spots and shining rectangles in one form.
 
+use crate::features;
 use crate::math::Vec3;
 use crate::math::lanes::{Bound, F, V3, splat};
 use crate::math::sampling::r2;
@@ -22,6 +23,8 @@ pub struct Lamp {
     sides: [Vec3; 2],
     /// The lamp stands for a rectangle, whose highlight mirrors show by themselves.
     pub is_emitter: bool,
+    /// Nothing casts a shadow in its light.
+    pub is_fill: bool,
 }
 
 /// All lamps of a scene: its lights, then one in the middle of each shining rectangle.
@@ -32,7 +35,7 @@ pub fn lamps(scene: &Scene) -> Vec<Lamp> {
         let (position, colour, axis, sides, inner, outer) = if i < count {
             let light = &scene.lights[i];
             let (axis, inner, outer) = match light.kind {
-                LightKind::Point => (Vec3::ZERO, -1.0, -2.0),
+                LightKind::Point | LightKind::Fill => (Vec3::ZERO, -1.0, -2.0),
                 LightKind::Spot { direction, inner, outer } => (direction, inner, outer),
             };
             (light.position, light.colour, axis, [Vec3::ZERO; 2], inner, outer)
@@ -42,7 +45,8 @@ pub fn lamps(scene: &Scene) -> Vec<Lamp> {
             (e.centre, colour, e.normal(), [e.u * e.half[0], e.v * e.half[1]], 1.0, 0.0)
         };
         let gain = 1.0 / (inner - outer).max(1e-6);
-        Lamp { position, colour, axis, outer, gain, sides, is_emitter: i >= count }
+        let is_fill = features::FILL && i < count && scene.lights[i].kind == LightKind::Fill;
+        Lamp { position, colour, axis, outer, gain, sides, is_emitter: i >= count, is_fill }
     };
     (0..count + scene.emitters.len()).map(lamp).collect()
 }
