@@ -80,7 +80,7 @@ static DRAWING: [Effect; 5] = [
     Effect { place: RIGHT, ..Effect::new(Kind::Cells { shade: 0.6, colour: v(0.07, 0.06, 0.18) }) },
     Effect {
         place: Place { normal: Vec2::NEG_Y, from: 0.32, over: 0.28 },
-        ..Effect::new(Kind::Lighten(-0.9))
+        ..Effect::new(Kind::Tint { colour: Vec3::ZERO, strength: 0.9 })
     },
 ];
 

@@ -15,6 +15,7 @@ use glam::Vec2;
 /// Whether shape `index` may cover part of the cell around `centre` with half sides `half` (on
 /// the plane one unit ahead), whose corners, in reading order, are at `depths`.
 #[inline(never)]
+#[cfg_attr(luc_size, optimize(size))]
 pub fn may_cover(stage: &Stage, index: usize, centre: Vec2, half: Vec2, depths: &[f32; 4]) -> bool {
     let deepest = depths.iter().fold(0.0_f32, |m, &d| m.max(d));
     match stage.scene.shape(index) {
@@ -36,6 +37,7 @@ pub fn may_cover(stage: &Stage, index: usize, centre: Vec2, half: Vec2, depths: 
 
 /// Whether a ball (middle in view coordinates) may lie before the depth `deepest` in a cell.
 #[inline(never)]
+#[cfg_attr(luc_size, optimize(size))]
 pub fn ball_may_cover(c: Vec3, radius: f32, centre: Vec2, half: Vec2, deepest: f32) -> bool {
     let reach = half.length();
     let front = nearest_in_cone(c, radius, Vec3::from(centre.extend(1.0)).normalize(), reach);

@@ -140,6 +140,7 @@ pub(super) fn soft(stage: &Stage, spread: F) -> F {
 /// Traces `scratch.rays`, adds what they find to their samples, and appends what goes on from
 /// there to `scratch.next`.
 #[inline(never)]
+#[cfg_attr(luc_size, optimize(size))]
 fn step(stage: &Stage, scratch: &mut Scratch, candidates: u64, level: u32) {
     let Scratch { samples, counters, rays, next, hits, occluders: boxes, .. } = scratch;
     hits.clear();

@@ -234,6 +234,7 @@ pub struct Point {
 /// the same. Four corners of a tetrahedron (Quilez) would do with two values less, but their error is of
 /// first order: with edges rounded by 0.1, a degree.
 #[inline(never)]
+#[cfg_attr(luc_size, optimize(size))]
 pub fn locate(field: &Field, p: V3, width: F, toward: V3) -> Point {
     let all = [TRUE; Field::MOST];
     let mut shares = [F::ZERO; Field::MOST];
