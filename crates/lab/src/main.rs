@@ -12,6 +12,7 @@ mod effects;
 mod figures;
 mod font;
 mod lights;
+mod machinery;
 mod memory;
 mod mesh;
 mod metric;
@@ -36,7 +37,7 @@ use std::process::exit;
 /// A command: its name, what follows it, what it does, and the function.
 type Command = (&'static str, &'static str, &'static str, fn(&[String]) -> Result<(), String>);
 
-const COMMANDS: [Command; 16] = [
+const COMMANDS: [Command; 17] = [
     (
         "accuracy",
         "[--quick]",
@@ -58,6 +59,12 @@ const COMMANDS: [Command; 16] = [
     ("peers", "[--quick]", "our tracer beside those of other crates, in one run", peers::run),
     ("memory", "PROGRAM [WxH]", "most memory that a player holds, by part", memory::run),
     ("lights", "", "culled against naive small lights", lights::run),
+    (
+        "machinery",
+        "[--engines] [PART]...",
+        "what each machinery costs, and that what isn't called for costs nothing",
+        machinery::run,
+    ),
     ("smoke", "", "what the motion, the light and the sight of smoke cost", smoke::run),
     ("numbers", "[CASES]", "formulas against the truth, as a page and a plot in docs", numbers::run),
     ("render", "FILE.obj [-o FILE.png] [--turn N]", "a model of triangles, in a studio", render::run),
