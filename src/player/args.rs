@@ -307,8 +307,8 @@ Lúč, a ray-traced intro. Esc ends it.
   --quality NAME   "
             .as_bytes(),
         &one_of(quality),
-        b"
-  --scene NAME     only this part: ",
+        b" (a frame: high)
+  --scene NAME     only ",
         &one_of(scene),
         ORDINARY_HELP,
         b"
