@@ -5,6 +5,7 @@
 
 use super::text::{Text, join, number, quoted, whole};
 use luc::show;
+use luc_core::features::AVERAGE;
 use luc_core::quality::Quality;
 use luc_core::render::View;
 use std::ffi::OsStr;
@@ -13,7 +14,9 @@ use std::ffi::OsStr;
 pub const LARGEST: (u32, u32) = (7680, 4320);
 const MOST_THREADS: u64 = 256;
 const MOST_PATTERNS: u64 = 1024;
-/// What the size build says, which draws light only.
+/// Whether frames can be drawn as something else than light.
+const VIEWS: bool = cfg!(not(luc_size));
+/// What is said of the options that a build lacks.
 const LEFT_OUT: &[u8] = b" is left out of this small build; the ordinary one has it";
 
 /// What the user wants.
@@ -116,8 +119,13 @@ const FLAGS: &[(&str, Flag, Takes, For)] = &[
     ("--size", Flag::Size, Takes::Size, For::Pictures),
     ("--quality", Flag::Quality, Takes::Name(quality), For::Pictures),
     ("--scene", Flag::Scene, Takes::Name(scene), For::Anything),
-    ("--average", Flag::Average, ordinary(Takes::Number(1, MOST_PATTERNS)), For::Frames),
-    ("--view", Flag::View, ordinary(Takes::Name(view)), For::Frames),
+    (
+        "--average",
+        Flag::Average,
+        if AVERAGE { Takes::Number(1, MOST_PATTERNS) } else { Takes::Nothing },
+        For::Frames,
+    ),
+    ("--view", Flag::View, if VIEWS { Takes::Name(view) } else { Takes::Nothing }, For::Frames),
     ("-o", Flag::Output, Takes::File, For::Frames),
     ("--once", Flag::Once, Takes::Nothing, For::Playing),
     ("--fullscreen", Flag::Fullscreen, Takes::Nothing, For::Playing),
@@ -126,11 +134,6 @@ const FLAGS: &[(&str, Flag, Takes, For)] = &[
     #[cfg(feature = "sound")]
     ("--wav", Flag::Wav, Takes::Sound, For::Anything),
 ];
-
-/// What a flag takes that only the ordinary build has.
-const fn ordinary(takes: Takes) -> Takes {
-    if cfg!(luc_size) { Takes::Nothing } else { takes }
-}
 
 /// Reads the arguments that follow the program's name.
 pub fn parse<'a>(args: &[&'a OsStr]) -> Result<Request<'a>, Text> {
@@ -179,7 +182,8 @@ pub fn parse<'a>(args: &[&'a OsStr]) -> Result<Request<'a>, Text> {
             Flag::Size => options.size = (n as u32, height as u32),
             Flag::Quality => options.quality = Some(n as usize),
             Flag::Scene => options.scene = Some(n as usize),
-            Flag::Average | Flag::View if cfg!(luc_size) => return Err(join(&[name, LEFT_OUT])),
+            Flag::Average if !AVERAGE => return Err(join(&[name, LEFT_OUT])),
+            Flag::View if !VIEWS => return Err(join(&[name, LEFT_OUT])),
             Flag::Average => options.average = n as u32,
             Flag::View => options.view = Some(n as usize),
             Flag::Output => options.output = typed.copied(),
@@ -199,7 +203,7 @@ pub fn parse<'a>(args: &[&'a OsStr]) -> Result<Request<'a>, Text> {
     if options.frame.is_none() && !still.is_empty() {
         return Err(join(&[still, b" needs --frame N, the frame to write"]));
     }
-    if cfg!(not(luc_size)) && options.view.is_some() && options.average > 1 {
+    if VIEWS && options.view.is_some() && options.average > 1 {
         return Err(join(&[b"--average is for light; leave it or --view out"]));
     }
     if options.frame.is_some() && !windowed.is_empty() {
@@ -273,15 +277,22 @@ fn one_of(names: Names) -> Text {
     out
 }
 
-/// What `--help` says of what only the ordinary build has.
-const ORDINARY_HELP: &[u8] = if cfg!(luc_size) {
-    b""
-} else {
+/// What `--help` says of averages, where there are any.
+const AVERAGE_HELP: &[u8] = if AVERAGE {
     b"
-  --average K      a frame as the mean of K sample patterns, 1 to 1024 (1)
+  --average K      a frame as the mean of K sample patterns, 1 to 1024 (1)"
+} else {
+    b""
+};
+
+/// What `--help` says of views, where there are any.
+const VIEW_HELP: &[u8] = if VIEWS {
+    b"
   --view NAME      draw a frame's normal, distance (white at 50 units), albedo,
                    sampling, lights (blue: one small light, white: 64) or
                    steps (of its rays, white at 128) instead"
+} else {
+    b""
 };
 
 /// What `--help` says of sound, where there is any.
@@ -310,7 +321,8 @@ Lúč, a ray-traced intro. Esc ends it.
         b" (a frame: high)
   --scene NAME     only ",
         &one_of(scene),
-        ORDINARY_HELP,
+        AVERAGE_HELP,
+        VIEW_HELP,
         b"
   --from N         start at frame N, 60 a second
   --once           end instead of looping

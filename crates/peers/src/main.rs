@@ -71,10 +71,7 @@ fn run(counts: &[usize], side: usize) -> Result<(), String> {
         let primary = rays::primary(side);
         let mut hits = vec![0.0; primary.len()];
         tracers[0].trace(&primary, &mut hits);
-        let lists = [
-            rays::diffuse(&primary, &hits),
-            rays::shadow(&primary, &hits),
-        ];
+        let lists = [rays::diffuse(&primary, &hits), rays::shadow(&primary, &hits)];
         let lists: Vec<Rays> = std::iter::once(primary).chain(lists).collect();
         let mut times = [[f64::INFINITY; 3]; ALL.len()];
         let mut differ = [0.0_f64; ALL.len()];

@@ -35,49 +35,35 @@ fn ray(rays: &Rays, i: usize) -> Ray {
     Ray::new(rays.origins[i], rays.directions[i], 0.0, rays.ends[i].min(f32::MAX))
 }
 
-struct Wide(CwBvh, Vec<Triangle>);
+/// A tracer by one of the trees of obvhs, which are asked alike but share no trait.
+macro_rules! of_obvhs {
+    ($name:ident, $Tree:ident, $build:ident) => {
+        pub fn $name(triangles: &[[Vec3A; 3]]) -> Box<dyn Tracer> {
+            struct Of($Tree, Vec<Triangle>);
 
-pub fn obvhs_wide(triangles: &[[Vec3A; 3]]) -> Box<dyn Tracer> {
-    let triangles = triangles_of(triangles);
-    let bvh = build_cwbvh_from_tris(&triangles, BvhBuildParams::fast_build(), &mut Duration::default());
-    let ordered = bvh.primitive_indices.iter().map(|&i| triangles[i as usize]).collect();
-    Box::new(Wide(bvh, ordered))
+            impl Tracer for Of {
+                fn trace(&self, rays: &Rays, out: &mut [f32]) {
+                    let Of(tree, triangles) = self;
+                    let nearest = |i| {
+                        let mut hit = RayHit::none();
+                        tree.ray_traverse(ray(rays, i), &mut hit, |ray, id| triangles[id].intersect(ray));
+                        hit.t
+                    };
+                    let any =
+                        |i| !tree.ray_traverse_miss(ray(rays, i), |ray, id| triangles[id].intersect(ray));
+                    each(rays, out, nearest, any);
+                }
+            }
+
+            let triangles = triangles_of(triangles);
+            let tree = $build(&triangles, BvhBuildParams::fast_build(), &mut Duration::default());
+            let ordered = tree.primitive_indices.iter().map(|&i| triangles[i as usize]).collect();
+            Box::new(Of(tree, ordered))
+        }
+    };
 }
-
-impl Tracer for Wide {
-    fn trace(&self, rays: &Rays, out: &mut [f32]) {
-        let Wide(bvh, triangles) = self;
-        let nearest = |i| {
-            let mut hit = RayHit::none();
-            bvh.ray_traverse(ray(rays, i), &mut hit, |ray, id| triangles[id].intersect(ray));
-            hit.t
-        };
-        let any = |i| !bvh.ray_traverse_miss(ray(rays, i), |ray, id| triangles[id].intersect(ray));
-        each(rays, out, nearest, any);
-    }
-}
-
-struct Binary(Bvh2, Vec<Triangle>);
-
-pub fn obvhs_binary(triangles: &[[Vec3A; 3]]) -> Box<dyn Tracer> {
-    let triangles = triangles_of(triangles);
-    let bvh = build_bvh2_from_tris(&triangles, BvhBuildParams::fast_build(), &mut Duration::default());
-    let ordered = bvh.primitive_indices.iter().map(|&i| triangles[i as usize]).collect();
-    Box::new(Binary(bvh, ordered))
-}
-
-impl Tracer for Binary {
-    fn trace(&self, rays: &Rays, out: &mut [f32]) {
-        let Binary(bvh, triangles) = self;
-        let nearest = |i| {
-            let mut hit = RayHit::none();
-            bvh.ray_traverse(ray(rays, i), &mut hit, |ray, id| triangles[id].intersect(ray));
-            hit.t
-        };
-        let any = |i| !bvh.ray_traverse_miss(ray(rays, i), |ray, id| triangles[id].intersect(ray));
-        each(rays, out, nearest, any);
-    }
-}
+of_obvhs!(obvhs_wide, CwBvh, build_cwbvh_from_tris);
+of_obvhs!(obvhs_binary, Bvh2, build_bvh2_from_tris);
 
 struct Parry(TriMesh);
 

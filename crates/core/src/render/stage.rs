@@ -178,8 +178,14 @@ impl<'a> Stage<'a> {
 
     /// Shadow rays to a lamp.
     pub fn shadow_rays(&self, lamp: usize) -> u32 {
-        let soft = features::SOFT_SHADOWS && self.scene.soft && self.lamps[lamp].is_emitter;
-        if soft { self.quality.shadow_samples } else { !(features::FILL && self.lamps[lamp].is_fill) as u32 }
+        let Lamp { is_emitter, is_fill, .. } = self.lamps[lamp];
+        if features::FILL && is_fill {
+            0
+        } else if features::SOFT_SHADOWS && self.scene.soft && is_emitter {
+            self.quality.shadow_samples
+        } else {
+            1
+        }
     }
 
     /// Mask of the shapes that may show in the square of `side` px at `corner`, see

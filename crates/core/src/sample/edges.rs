@@ -41,6 +41,7 @@ pub fn smooth_edges(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize)
     let height = TILE.min(stage.height as usize - corner.1);
     for side in stage.sides() {
         let before = scratch.counters.rays();
+        // The size of these cells is the number of their samples: so their list needs no room of its own.
         let mut pixels = std::mem::take(&mut scratch.cells);
         pixels.clear();
         for y in 0..height {

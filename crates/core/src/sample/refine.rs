@@ -353,9 +353,9 @@ impl Surroundings {
             let faces = known.samples[..4].iter().any(|s| s.normal().dot(position - s.point()) > 0.0);
             let lit = faces && known.samples[..4].iter().all(|s| s.code(lamp) != BLOCKED);
             // Soft shadows rest on the samples alone; a fill light has none.
-            let soft = stage.shadow_rays(lamp) != 1;
+            let is_hard = stage.shadow_rays(lamp) == 1;
             if (self.shadows[lamp] == 0 && meshes.is_empty())
-                || soft
+                || !is_hard
                 || !lit
                 || !stage.lamps[lamp].lights(material)
             {

@@ -1,7 +1,7 @@
 //! What a frame costs over its size: every part at `high` from 320x180 to 3840x2160, and the
 //! exponents of growth.
 
-use super::knobs::base;
+use super::knob::base;
 use super::table::short;
 use crate::figures::{power_law, processor_ms, quantile};
 use crate::progress::Progress;

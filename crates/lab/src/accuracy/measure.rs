@@ -1,6 +1,6 @@
 //! One frame under all settings: interleaved passes for the time, then counts and errors.
 
-use super::knobs::{Change, FULL_LIGHT, Knob, MANY, Setting, Truth, base};
+use super::knob::{Change, FULL_LIGHT, Knob, MANY, Setting, Truth, base};
 use super::table::{Figure, Row};
 use crate::figures::{mean, processor_ms, quantile};
 use crate::metric::{Picture, flicker, flip, greatest, linear_rmse, psnr, psnr_of_rmse, ssim};

@@ -8,6 +8,7 @@
 
 mod front;
 mod growth;
+mod knob;
 mod knobs;
 mod measure;
 mod page;
@@ -19,7 +20,8 @@ use crate::metric::Picture;
 use crate::numbers;
 use crate::progress::Progress;
 use crate::subject::Subject;
-use knobs::{Change, Knob, On, Truth, knobs};
+use knob::{Change, Knob, On, Truth};
+use knobs::knobs;
 use lexopt::prelude::*;
 use luc_core::quality::Quality;
 use luc_core::render::Renderer;
@@ -170,7 +172,7 @@ fn fingerprint() -> u64 {
     for subject in Subject::show() {
         add(subject.name.as_bytes());
         for n in subject.spread(4).take(2) {
-            renderer.frame(&subject.bare(n), n, (64, 36), &knobs::base(), &mut pixels);
+            renderer.frame(&subject.bare(n), n, (64, 36), &knob::base(), &mut pixels);
             pixels.iter().for_each(|p| add(&p.to_be_bytes()));
         }
     }

@@ -2,7 +2,7 @@
 
 use super::front::{Averaged, averaged};
 use super::growth::Point;
-use super::knobs::{BASE, Knob, On};
+use super::knob::{BASE, Knob, On};
 use super::pictures::{FOLDER, SHOWN, file_name, mapped};
 use super::table::{Figure, Row};
 use luc_core::quality::Quality;
@@ -166,7 +166,7 @@ fn text(data: &Data) -> String {
         t += &table(if knob.on == On::Fireflies { "px" } else { "position" }, &settings, &knob.base);
         if knob.name == "shading" {
             for part in &parts {
-                let rung = |s: &super::knobs::Setting| figure(part, &s.label, &s.label);
+                let rung = |s: &super::knob::Setting| figure(part, &s.label, &s.label);
                 let rungs: String = knob.settings.iter().map(rung).collect();
                 t += &format!("<p>{part}</p><div class=\"row\">{rungs}</div>\n");
             }

@@ -1,6 +1,7 @@
 //! Side-by-side pictures of every part: presets, the truth, and where they differ.
 
-use super::knobs::{Change, Setting, Truth, knobs};
+use super::knob::{Change, Setting, Truth};
+use super::knobs::knobs;
 use super::measure::{draw, truth_setting};
 use crate::metric::{Picture, flip};
 use crate::png_file;

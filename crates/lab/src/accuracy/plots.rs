@@ -2,7 +2,7 @@
 
 use super::front::{Averaged, averaged, front};
 use super::growth::exponent;
-use super::knobs::{BASE, Knob, On};
+use super::knob::{BASE, Knob, On};
 use super::page::Data;
 use super::table::{Figure, Row};
 use crate::plot::{Axis, COLOURS, Chart, Look, Point, Series, draw, page};
