@@ -22,9 +22,8 @@ pub fn rect(picture: (usize, usize), window: (usize, usize)) -> Rect {
     Rect { x: (ww - width) / 2, y: (wh - height) / 2, width, height }
 }
 
-/// Fills `out`, the window's pixels, with `pixels` fitted in.
-pub fn fit(pixels: &[u32], picture: (usize, usize), out: &mut Vec<u32>, window: (usize, usize)) {
-    let r = rect(picture, window);
+/// Fills `out`, the window's pixels, with `pixels` stretched over a rectangle of it.
+pub fn fit(pixels: &[u32], picture: (usize, usize), r: &Rect, out: &mut Vec<u32>, window: (usize, usize)) {
     out.resize(window.0 * window.1, 0);
     out[..r.y * window.0].fill(0);
     out[(r.y + r.height) * window.0..].fill(0);
@@ -83,7 +82,7 @@ mod tests {
 
     fn fitted(pixels: &[u32], picture: (usize, usize), window: (usize, usize)) -> Vec<u32> {
         let mut out = vec![0xdead; 2_000];
-        fit(pixels, picture, &mut out, window);
+        fit(pixels, picture, &rect(picture, window), &mut out, window);
         assert_eq!(out.len(), window.0 * window.1);
         out
     }

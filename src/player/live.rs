@@ -1,14 +1,15 @@
-//! Live quality: the best preset that holds 60 frames a second, found from measured render times.
+//! Live quality: the best level that holds 60 frames a second, found from measured render times.
 //!
-//! Going down is quick, because lost frames are seen; going up is slow and needs room to spare, because
-//! the next preset costs more. An ascent that fails doubles the wait before the next one, so a machine
-//! between two presets settles instead of flickering between them.
+//! Levels are the presets, and under them smaller pictures. Going down is quick, because lost frames are
+//! seen; going up is slow and needs room to spare, because the next level costs more. An ascent that fails
+//! doubles the wait before the next one, so a machine between two levels settles instead of flickering
+//! between them.
 
 use std::time::Duration;
 
 /// The longest a frame may take: a sixtieth of a second less what presenting needs.
 const BUDGET: u32 = 15_000; // microseconds
-/// A preset about twice as dear still fits if the frame takes less than this.
+/// A level about twice as dear still fits if the frame takes less than this.
 const ROOMY: u32 = BUDGET / 2;
 /// Going down takes this many late frames more than timely ones; very late frames count up to thrice.
 const LATE_LIMIT: u32 = 6;
@@ -17,7 +18,7 @@ const PATIENCE: u32 = 60;
 /// The longest wait between two ascents, frames; half a minute.
 const MOST_PATIENCE: u32 = 32 * PATIENCE;
 
-/// The controller; starts at a middle preset.
+/// The controller; starts at a middle level.
 pub struct Live {
     level: usize,
     top: usize,
@@ -29,12 +30,12 @@ pub struct Live {
 }
 
 impl Live {
-    /// Starts at `level` and never passes `top`, both indices into the presets.
+    /// Starts at `level` and never passes `top`.
     pub fn new(level: usize, top: usize) -> Self {
         Live { level, top, late: 0, roomy: 0, patience: PATIENCE, trial: None }
     }
 
-    /// The preset to render with.
+    /// The level to render at.
     pub fn level(&self) -> usize {
         self.level
     }
@@ -76,7 +77,7 @@ mod tests {
 
     const TOP: usize = 4;
 
-    /// Plays `frames` on a machine where preset i takes `costs[i]` ms; returns the level after each.
+    /// Plays `frames` on a machine where level i takes `costs[i]` ms; returns the level after each.
     fn play(live: &mut Live, frames: usize, costs: [u64; TOP + 1]) -> Vec<usize> {
         (0..frames)
             .map(|_| {
@@ -131,7 +132,7 @@ mod tests {
         play(&mut live, 3600, [1, 2, 4, 6, 40]);
         let minute = play(&mut live, 3600, [1, 2, 4, 6, 40]);
         let above = minute.iter().filter(|&&l| l > 3).count();
-        assert!(above < 36, "{above} of 3600 frames at a preset that cannot hold");
+        assert!(above < 36, "{above} of 3600 frames at a level that cannot hold");
         assert!(changes(&minute) <= 8, "{} changes in a minute", changes(&minute));
     }
 

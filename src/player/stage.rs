@@ -19,11 +19,13 @@ use std::sync::atomic::{AtomicBool, AtomicU32, AtomicUsize, Ordering::Relaxed};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-const DRAFT: usize = 0;
-/// Where live quality starts.
-const MEDIUM: usize = 2;
-/// The last preset meant for playing; the one above is for measuring.
-const ULTRA: usize = Quality::PRESETS.len() - 2;
+/// Levels of live quality below the first preset: that preset on this many twelfths of the picture's sides.
+/// Sharpness is missed less than motion.
+const SMALLER: [usize; 3] = [4, 6, 8];
+/// The levels of three presets. Playing starts at the middle one; the one above the last is for measuring.
+const DRAFT: usize = SMALLER.len();
+const MEDIUM: usize = DRAFT + 2;
+const ULTRA: usize = DRAFT + Quality::PRESETS.len() - 2;
 
 /// A finished frame.
 #[derive(Default)]
@@ -137,7 +139,8 @@ impl Stage {
             }
             last = Some(n);
             let began = Instant::now();
-            self.draw(&mut renderer, n, self.quality.unwrap_or(live.level()), &mut picture);
+            let level = self.quality.map_or(live.level(), |preset| DRAFT + preset);
+            self.draw(&mut renderer, n, level, &mut picture);
             live.measured(began.elapsed());
             let mut newest = self.newest();
             newest.0 = true;
@@ -147,14 +150,16 @@ impl Stage {
     }
 
     /// Draws frame `n` no larger than the window: what would be scaled down need not be drawn.
-    fn draw(&self, renderer: &mut Renderer, n: u64, quality: usize, picture: &mut Picture) {
+    fn draw(&self, renderer: &mut Renderer, n: u64, level: usize, picture: &mut Picture) {
         let room = self.room.load(Relaxed);
         let fitted = fit::rect(self.size, ((room >> 16) as usize, (room & 0xffff) as usize));
         let (width, height) = self.size;
-        picture.size = (width.min(fitted.width), height.min(fitted.height));
+        let share = SMALLER.get(level).unwrap_or(&12);
+        let side = |full: usize| (full * share / 12).max(1);
+        picture.size = (side(width.min(fitted.width)), side(height.min(fitted.height)));
         let (width, height) = picture.size;
         picture.pixels.resize(width * height, 0);
-        let quality = &Quality::PRESETS[quality].1;
+        let quality = &Quality::PRESETS[level.saturating_sub(DRAFT)].1;
         show::frame(renderer, n, (width as u32, height as u32), quality, &mut picture.pixels);
     }
 }
@@ -172,9 +177,24 @@ mod tests {
 
     #[test]
     fn live_quality_moves_between_the_presets_meant_for_playing() {
-        assert_eq!(Quality::PRESETS[DRAFT].0, "draft");
-        assert_eq!(Quality::PRESETS[MEDIUM].0, "medium");
-        assert_eq!(Quality::PRESETS[ULTRA].0, "ultra");
+        let name = |level: usize| Quality::PRESETS[level - DRAFT].0;
+        assert_eq!([DRAFT, MEDIUM, ULTRA].map(name), ["draft", "medium", "ultra"]);
+    }
+
+    #[test]
+    fn below_draft_the_picture_shrinks_in_its_shape() {
+        let stage = Stage::new(&Options { size: (240, 120), ..options() }, (240, 120));
+        let mut picture = Picture::default();
+        let mut sizes = Vec::new();
+        for level in 0..=DRAFT + 1 {
+            stage.draw(&mut Renderer::default(), 0, level, &mut picture);
+            assert_eq!(picture.pixels.len(), picture.size.0 * picture.size.1);
+            sizes.push(picture.size);
+        }
+        assert_eq!(sizes, [(80, 40), (120, 60), (160, 80), (240, 120), (240, 120)]);
+        let tiny = Stage::new(&Options { size: (1, 2), ..options() }, (240, 120));
+        tiny.draw(&mut Renderer::default(), 0, 0, &mut picture);
+        assert_eq!(picture.size, (1, 1));
     }
 
     #[test]
