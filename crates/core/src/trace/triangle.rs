@@ -10,7 +10,7 @@
 //! All of it acts lane by lane: eight rays against one triangle, or one ray against eight.
 
 use super::{Rays8, Span};
-use crate::math::lanes::{F, V3, difference_of_products};
+use crate::math::lanes::{Bound, F, V3, difference_of_products};
 use crate::scene::Triangle;
 
 /// Eight rays, turned and sheared.
@@ -67,13 +67,17 @@ impl Aim {
             let p = self.turn(p - self.origin);
             V3::new(p.x - self.shear_x * p.z, p.y - self.shear_y * p.z, p.z)
         });
+        // Rounding keeps the order of two products, so what is apart is apart exactly.
+        let about = |p: V3, q: V3| q.x * p.y - q.y * p.x;
+        let (u, v, w) = (about(b, c), about(c, a), about(a, b));
+        let outside = u.at_most(v).at_most(w).simd_lt(zero) & u.at_least(v).at_least(w).simd_gt(zero);
+        if outside.all() {
+            return Crossing { t: zero, hit: zero, weights: [F::ONE, zero, zero], sum: F::ONE };
+        }
         let edge = |p: V3, q: V3| difference_of_products(q.x, p.y, q.y, p.x);
         let (u, v, w) = (edge(b, c), edge(c, a), edge(a, b));
         let inside = (u.simd_ge(zero) & v.simd_ge(zero) & w.simd_ge(zero))
             | (u.simd_le(zero) & v.simd_le(zero) & w.simd_le(zero));
-        if !inside.any() {
-            return Crossing { t: zero, hit: zero, weights: [F::ONE, zero, zero], sum: F::ONE };
-        }
         let sum = u + v + w;
         let t = (u * a.z + v * b.z + w * c.z) / (sum * self.along);
         Crossing { t, hit: inside & sum.simd_ne(zero), weights: [u, v, w], sum }
