@@ -132,19 +132,22 @@ fn mercury(t: f32) -> Field {
     };
     for (k, (at, radius)) in LOBES.into_iter().enumerate() {
         let phase = 0.37 * k as f32;
-        let sway =
-            v(0.16 * swing(t, 3.7, phase), 0.14 * swing(t, 2.9, phase + 0.2), 0.1 * swing(t, 5.3, phase));
+        let sway = Vec3::new(
+            0.16 * swing(t, 3.7, phase),
+            0.14 * swing(t, 2.9, phase + 0.2),
+            0.1 * swing(t, 5.3, phase),
+        );
         drop(at + sway, radius * (1.0 + 0.06 * swing(t, 2.0, phase)));
     }
     for k in 0..3 {
         // One arrives on each beat.
         let way = (t / 1.5 + k as f32 / 3.0).fract();
-        drop(v(0.27 - 0.05 * way, 4.2 - 2.9 * way * way, 0.45), 0.14 + 0.2 * way);
+        drop(Vec3::new(0.27 - 0.05 * way, 4.2 - 2.9 * way * way, 0.45), 0.14 + 0.2 * way);
     }
     for (k, away) in AWAY.into_iter().enumerate() {
         let way = (t / 4.0 + 0.27 * k as f32).fract();
         let share = 1.0 - (1.0 - way) * (1.0 - way);
-        let at = away * (0.3 + 0.75 * share) + v(0.1, 0.9 * way * (0.7 - way), 0.4);
+        let at = away * (0.3 + 0.75 * share) + Vec3::new(0.1, 0.9 * way * (0.7 - way), 0.4);
         drop(at, 0.32 * (1.0 - way * way));
     }
     Field::new(nodes)
@@ -170,7 +173,7 @@ pub fn scene(frame: u64) -> Scene {
         mercury(t),
     ];
     scene.occlusion = 1.6;
-    let target = v(0.75 + 0.15 * swing(t, 13.0, 0.0), 0.45, 0.0);
+    let target = Vec3::new(0.75 + 0.15 * swing(t, 13.0, 0.0), 0.45, 0.0);
     scene.camera = Camera {
         position: target + v(-0.312, 0.01, 0.95) * track(&DISTANCE, t),
         target,

@@ -104,7 +104,7 @@ fn titles(figures: &Figures) -> Scene {
     (scene.grade.bloom_threshold, scene.grade.bloom) = (0.9, 0.5);
     let height = figures.height;
     let split = &figures.split;
-    let at = |y: f32| v(split.x + split.slant * y, height * y, -1.0);
+    let at = |y: f32| Vec3::new(split.x + split.slant * y, height * y, -1.0);
     for (width, colour) in [(0.0036, v(3.3, 2.4, 1.35)), (0.03, v(0.3, 0.16, 0.08))] {
         let colour = colour * split.light;
         scene.beams.push(Beam { from: at(1.2), to: at(-1.2), width, colour, fade: 0.0 });
@@ -128,9 +128,9 @@ fn titles(figures: &Figures) -> Scene {
     ] {
         let line = Line {
             words,
-            origin: v(x, unit * y - height, -1.0),
+            origin: Vec3::new(x, unit * y - height, -1.0),
             right: unit * step * 0.85,
-            up: v(0.0, unit * step, 0.0),
+            up: Vec3::new(0.0, unit * step, 0.0),
             width: unit * step * 0.24,
             colour,
         };
@@ -144,7 +144,7 @@ pub fn scene(frame: u64) -> Scene {
     let t = seconds(frame);
     let x = track(&X, t);
     let mut s = STILL.scene();
-    let position = v(1.9, 2.4, 7.2 + t / 24.0);
+    let position = Vec3::new(1.9, 2.4, 7.2 + t / 24.0);
     s.camera = Camera { position, target: v(-1.1, 4.5, -12.0), roll: degrees(-2.0), fov: degrees(52.0) };
     s.meshes = cathedral(20.0, 8, false);
     s.lights[1].kind = LightKind::Fill;

@@ -76,13 +76,13 @@ pub fn scene(frame: u64) -> Scene {
     scene.beams[5].width = 0.19;
 
     let camera = &mut scene.camera;
-    camera.position = v(-8.06 + 0.03 * t, 3.31, 31.1 - 0.1 * t).lerp(camera.position, back);
+    camera.position = Vec3::new(-8.06 + 0.03 * t, 3.31, 31.1 - 0.1 * t).lerp(camera.position, back);
     camera.target = v(-4.35, 1.85, 8.87).lerp(camera.target, back);
     for (k, words) in WORDS.into_iter().enumerate() {
         let k = k as f32;
         let line = Line {
             words,
-            origin: v(-10.6, 0.0, 13.1 + 2.6 * k),
+            origin: Vec3::new(-10.6, 0.0, 13.1 + 2.6 * k),
             right: 0.19,
             up: v(0.0, 0.0, -0.34),
             width: 0.035,

@@ -62,7 +62,7 @@ pub fn crystal(out: &mut Triangles, foot: Vec3, axis: Vec3, [radius, tip]: [f32;
 /// A point of the arch at a share of the way up, from the pier's axis, moved outwards.
 fn arch(share: f32, out: f32) -> Vec3 {
     let (sin, cos) = sin_cos(share * APEX);
-    v((ARCH + out) * cos - ARCH, SPRING + (ARCH + out) * sin, 0.0)
+    Vec3::new((ARCH + out) * cos - ARCH, SPRING + (ARCH + out) * sin, 0.0)
 }
 
 /// The pier's shaft and capital.
@@ -76,7 +76,7 @@ pub fn shaft(out: &mut Triangles, _: &mut Dice) {
 pub fn foot(out: &mut Triangles, dice: &mut Dice) {
     for k in 0..7 {
         let (sin, cos) = sin_cos(k as f32 * 0.9 + dice.roll(-0.3, 0.3));
-        let away = v(cos, 0.0, sin);
+        let away = Vec3::new(cos, 0.0, sin);
         let height = dice.roll(0.9, 2.2) * dice.roll(0.9, 2.2);
         let axis = (Vec3::Y + away * dice.roll(0.02, 0.3)) * height;
         let sizes = [dice.roll(0.16, 0.34), dice.roll(0.3, 0.8)];
@@ -91,9 +91,9 @@ fn splinters(out: &mut Triangles, dice: &mut Dice) {
         // Few are large, and those stand in the aisles.
         let size = dice.roll(0.2, 1.0);
         let height = size * size * size * size * if x > -1.0 { 1.3 } else { 0.3 };
-        let axis = (v(dice.roll(-0.5, 0.5), 1.0, dice.roll(-0.5, 0.5))) * height;
+        let axis = (Vec3::new(dice.roll(-0.5, 0.5), 1.0, dice.roll(-0.5, 0.5))) * height;
         let sizes = [height * dice.roll(0.12, 0.3), height * 0.4];
-        crystal(out, v(x, 0.0, dice.roll(-0.5, 0.5) * BAY), axis, sizes, dice.roll(0.0, 1.0));
+        crystal(out, Vec3::new(x, 0.0, dice.roll(-0.5, 0.5) * BAY), axis, sizes, dice.roll(0.0, 1.0));
     }
 }
 
@@ -124,7 +124,7 @@ fn ribs(out: &mut Triangles, dice: &mut Dice) {
 fn vault(out: &mut Triangles, dice: &mut Dice) {
     let points: [[Vec3; 9]; 28] = std::array::from_fn(|j| {
         std::array::from_fn(|i| {
-            let shaken = v(dice.roll(-0.13, 0.13), dice.roll(-0.13, 0.13), dice.roll(-0.13, 0.13));
+            let shaken = Vec3::new(dice.roll(-0.13, 0.13), dice.roll(-0.13, 0.13), dice.roll(-0.13, 0.13));
             arch(j as f32 / 27.0, 0.45) + Vec3::Z * ((i as f32 / 8.0 - 0.5) * BAY) + shaken
         })
     });
@@ -142,7 +142,7 @@ fn vault(out: &mut Triangles, dice: &mut Dice) {
 fn rose(out: &mut Triangles, _: &mut Dice) {
     let around = |k: usize, radius: f32| {
         let (sin, cos) = sin_cos(k as f32 * degrees(15.0));
-        v(sin, cos, 0.0) * radius
+        Vec3::new(sin, cos, 0.0) * radius
     };
     for k in 0..24 {
         lathe(out, &[(around(k, 4.1), 0.3), (around(k + 1, 4.1), 0.3)], 6, 0.0);
@@ -200,12 +200,12 @@ pub fn cathedral(t: f32, bays: usize, rose: bool) -> Assembly {
         let began = bay as f32 - 1.5;
         // No two clusters of crystals stand the same way.
         let (sin, cos) = sin_cos(k as f32 * 1.7);
-        let turned = Mat3::from_cols(v(cos, 0.0, sin), Vec3::Y, v(-sin, 0.0, cos));
+        let turned = Mat3::from_cols(Vec3::new(cos, 0.0, sin), Vec3::Y, Vec3::new(-sin, 0.0, cos));
         for (i, (mesh, (_, material, delay, from))) in meshes.iter().zip(RULES).take(5).enumerate() {
             let size = growth(t - began - delay);
             if size > 0.02 && (rose || i > 0) {
                 let origin = v(side * SIDE, from * (1.0 - size), 4.0 - BAY * bay as f32);
-                let mirrored = Mat3::from_diagonal((v(side, 1.0, way) * size).into());
+                let mirrored = Mat3::from_diagonal((Vec3::new(side, 1.0, way) * size).into());
                 let grown = if i == FOOT { mirrored * turned } else { mirrored };
                 instances.push(Instance::new(mesh, grown, origin, material));
             }
@@ -279,9 +279,9 @@ static STILL: Still = Still {
 pub fn scene(frame: u64) -> Scene {
     let t = seconds(frame);
     let z = track(&Z, t);
-    let position = v(-1.5 * (z / 12.0).max(-0.6), track(&Y, t), z);
+    let position = Vec3::new(-1.5 * (z / 12.0).max(-0.6), track(&Y, t), z);
     let tilt = track(&TILT, t);
-    let target = position + v(0.1, tilt, -1.0);
+    let target = position + Vec3::new(0.1, tilt, -1.0);
     let mut s = STILL.scene();
     s.camera = Camera { position, target, roll: degrees(track(&ROLL, t)), fov: degrees(54.0) };
     for glow in &mut s.background.glows {

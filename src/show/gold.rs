@@ -24,14 +24,14 @@ fn bar(a: Vec3, b: Vec3, turn: f32, material: usize) -> Cylinder {
     let middle = (a + b) * 0.5;
     let (sin, cos) = sin_cos(turn * std::f32::consts::TAU);
     // A small cone around the upright, so that the bars lean and never leave the picture.
-    let turned = Mat3::from_cols(v(cos, 0.0, -sin), Vec3::Y, v(sin, 0.0, cos));
+    let turned = Mat3::from_cols(Vec3::new(cos, 0.0, -sin), Vec3::Y, Vec3::new(sin, 0.0, cos));
     let half = turned * (b - a) * 0.5;
     Cylinder::between(middle - half, middle + half, 0.27, material)
 }
 
 /// A ball of gold.
 const fn gold(x: f32, y: f32, z: f32, radius: f32) -> Sphere {
-    Sphere { centre: v(x, y, z), radius, material: 0, blend: 0.8 }
+    Sphere { centre: Vec3::new(x, y, z), radius, material: 0, blend: 0.8 }
 }
 
 static STILL: Still = Still {

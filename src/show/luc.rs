@@ -58,25 +58,25 @@ pub const LINE: Line<'static> = Line {
 /// Where the beam passes at an x.
 pub const fn at(x: f32) -> Vec3 {
     let share = (x + 14.0) / 19.2;
-    v(x, 3.26 - 2.01 * share, 1.83 - 2.18 * share)
+    Vec3::new(x, 3.26 - 2.01 * share, 1.83 - 2.18 * share)
 }
 
 /// A stroke of letter k: middle and half sides.
 const fn stroke(k: usize, x: f32, y: f32, half: Vec3) -> Node {
-    Node { material: k, ..Node::cuboid(v(x, y, 0.0), half, 0.12).joined(Join::Union, 0.03) }
+    Node { material: k, ..Node::cuboid(Vec3::new(x, y, 0.0), half, 0.12).joined(Join::Union, 0.03) }
 }
 
 const fn upright(k: usize, x: f32, y: f32, half: f32) -> Node {
-    stroke(k, x, y, v(0.26, half, 0.34))
+    stroke(k, x, y, Vec3::new(0.26, half, 0.34))
 }
 
 const fn level(k: usize, x: f32, y: f32, half: f32) -> Node {
-    stroke(k, x, y, v(half, 0.26, 0.34))
+    stroke(k, x, y, Vec3::new(half, 0.26, 0.34))
 }
 
 /// An accent, by the sine and cosine of its turn about z.
 const fn accent(k: usize, x: f32, y: f32, sin: f32, cos: f32) -> Node {
-    let axes = Mat3::from_cols(v(cos, sin, 0.0), v(-sin, cos, 0.0), Vec3::Z);
+    let axes = Mat3::from_cols(Vec3::new(cos, sin, 0.0), Vec3::new(-sin, cos, 0.0), Vec3::Z);
     Node { axes: Some(axes), ..stroke(k, x, y, v(0.16, 0.42, 0.26)) }
 }
 
@@ -225,7 +225,7 @@ pub fn scene(frame: u64) -> Scene {
     }
     let way = track(&DOLLY, t);
     scene.camera = Camera {
-        position: v(-2.6 + 0.74 * way, 1.15, 12.6 - 0.8 * way),
+        position: Vec3::new(-2.6 + 0.74 * way, 1.15, 12.6 - 0.8 * way),
         target: v(-0.15, 1.34, 0.0),
         roll: degrees(-1.2),
         fov: degrees(44.0),

@@ -134,7 +134,7 @@ pub fn scene(frame: u64) -> Scene {
     let above = Vec3::Y * cone;
     let ember = orbit(0.298 + t / 11.0, 2.9, 3.75 + 0.4 * swing(t, 7.0, 0.0));
     let turn = degrees(-15.0 + 12.0 * swing(t, 17.0, 0.0) + 6.0 * swing(t, 23.0, 0.25));
-    let target = v(1.5, track(&RISE, t), 0.0);
+    let target = Vec3::new(1.5, track(&RISE, t), 0.0);
     let away = orbit(turn / std::f32::consts::TAU, track(&DISTANCE, t), -0.05);
 
     let mut s = STILL.scene();

@@ -12,9 +12,15 @@ pub const fn seconds(frame: u64) -> f32 {
     frame as f32 / FPS as f32
 }
 
-/// A vector or colour.
+/// `x` with nine binary places after the first, about the three digits that the tables are written with: what
+/// more it has would be noise, of which a packer keeps every bit.
+pub const fn short(x: f32) -> f32 {
+    f32::from_bits((x.to_bits() + 0x2000) & !0x3fff)
+}
+
+/// A vector or colour of numbers in a table, [`short`]. What moves is a `Vec3::new`.
 pub const fn v(x: f32, y: f32, z: f32) -> Vec3 {
-    Vec3::new(x, y, z)
+    Vec3::new(short(x), short(y), short(z))
 }
 
 /// A colour times a strength.
@@ -31,7 +37,7 @@ pub fn swing(t: f32, period: f32, phase: f32) -> f32 {
 /// Point on a level circle around the y axis at `turn` (1 is once around), from +z towards +x.
 pub fn orbit(turn: f32, radius: f32, height: f32) -> Vec3 {
     let (sin, cos) = sin_cos(turn * TAU);
-    v(sin * radius, height, cos * radius)
+    Vec3::new(sin * radius, height, cos * radius)
 }
 
 /// Degrees as radians.
@@ -41,7 +47,7 @@ pub const fn degrees(x: f32) -> f32 {
 
 /// A key of a track.
 pub const fn key(time: f32, value: f32, ease: Ease) -> Key {
-    Key { time, value, ease }
+    Key { time, value: short(value), ease }
 }
 
 /// A bare metal: no diffuse part, mirrors in its own colour.
@@ -90,5 +96,5 @@ pub const fn glass(tint: Vec3, shadow: Vec3, ior: f32) -> Material {
 /// Reflectance at normal incidence of a body with index of refraction `ior` in air.
 const fn f0(ior: f32) -> Vec3 {
     let r = (ior - 1.0) / (ior + 1.0);
-    Vec3::splat(r * r)
+    Vec3::splat(short(r * r))
 }

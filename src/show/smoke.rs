@@ -1,27 +1,11 @@
 //! Smoke: a small house of voxels in the evening sun, in violet light from the other side, turns into
 //! smoke layer by layer, until only its window is left.
 
-use super::paint::{degrees, key, orbit, seconds, surface, swing};
+use super::paint::{degrees, key, orbit, seconds, surface, swing, times, v};
 use super::still::{Lamp, Still};
 use luc_core::math::Vec3;
 use luc_core::math::hash::{hash2, mix, unit};
 use luc_core::scene::*;
-
-/// A number with seven binary places after the first: it packs in half the bytes.
-const fn short(x: f32) -> f32 {
-    f32::from_bits((x.to_bits() + 0x8000) & 0xffff_0000)
-}
-
-/// A vector or colour.
-const fn v(x: f32, y: f32, z: f32) -> Vec3 {
-    times(Vec3::new(x, y, z), 1.0)
-}
-
-/// A colour times a strength.
-const fn times(c: Vec3, k: f32) -> Vec3 {
-    let [x, y, z] = c.to_array();
-    Vec3::new(short(x * k), short(y * k), short(z * k))
-}
 
 /// Cells of the house, and their side.
 const SIZE: [usize; 3] = [34, 26, 26];
@@ -183,7 +167,7 @@ pub fn scene(frame: u64) -> Scene {
     scene.smoke = Some(Smoke { rules: &SMOKE, steps, behind: (frame & 1) as f32 * 0.5 });
     scene.voxels = vec![figure(steps)];
     let way = t / 24.0;
-    let target = v(0.7, 1.5 + 0.25 * way, 0.0);
+    let target = Vec3::new(0.7, 1.5 + 0.25 * way, 0.0);
     let position = orbit(-0.0545 + 0.042 * way, 9.24, 1.55 + 0.6 * way);
     scene.camera = Camera { position, target, roll: degrees(1.5), fov: degrees(43.0) };
     let breath = 1.0 + 0.08 * swing(t, 4.0, 0.0);

@@ -61,7 +61,7 @@ const COUNT: [Key; 4] = [
 ];
 
 /// Corners of its flight that the camera has passed, over seconds.
-const BACK: [Key; 2] = [key(-2.0, 0.0, Ease::Smooth), key(16.0, 2.999, Ease::Step)];
+const BACK: [Key; 2] = [key(-2.0, 0.0, Ease::Smooth), key(16.0, 2.99, Ease::Step)];
 
 /// Point of a Catmull-Rom curve `x` corners behind its second one; it doesn't reach the first and the last.
 #[inline(never)]
@@ -98,12 +98,12 @@ fn hills() -> Mesh {
         };
         triangles.push(corners.map(|corner| {
             let (z, x) = at(corner);
-            v(x, height(x, z), z)
+            Vec3::new(x, height(x, z), z)
         }));
         normals.push(corners.map(|corner| {
             let (z, x) = at(corner);
             let slope = |dx, dz| height(x - dx, z - dz) - height(x + dx, z + dz);
-            v(slope(0.05, 0.0), 0.1, slope(0.0, 0.05))
+            Vec3::new(slope(0.05, 0.0), 0.1, slope(0.0, 0.05))
         }));
     }
     Mesh::smooth(triangles, normals)
@@ -114,10 +114,10 @@ fn shards(out: &mut Triangles, dice: &mut Dice) {
     for _ in 0..60 {
         let (x, z) = (dice.roll(-14.0, 16.0), dice.roll(-25.0, 9.0));
         let size = 0.3 + 1.1 * dice.roll(0.0, 1.0) * dice.roll(0.0, 1.0);
-        let axis = v(dice.roll(-0.6, 0.6), 1.5, dice.roll(-0.6, 0.6)) * size;
+        let axis = Vec3::new(dice.roll(-0.6, 0.6), 1.5, dice.roll(-0.6, 0.6)) * size;
         facets::crystal(
             out,
-            v(x, height(x, z) - 0.1, z),
+            Vec3::new(x, height(x, z) - 0.1, z),
             axis,
             [0.16 * size, 0.7 * size],
             dice.roll(0.0, 1.0),
@@ -263,7 +263,7 @@ pub fn scene(frame: u64) -> Scene {
     }
     let mut dice = Dice(0);
     for _ in 0..120 {
-        let away = v(dice.roll(-150.0, 150.0), dice.roll(5.0, 115.0), -120.0);
+        let away = Vec3::new(dice.roll(-150.0, 150.0), dice.roll(5.0, 115.0), -120.0);
         let colour = v(0.5, 0.5, 0.9) * dice.roll(0.1, 1.7);
         glow(&mut s, position + away, 0.09, colour);
     }

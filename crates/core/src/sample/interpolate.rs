@@ -27,10 +27,10 @@ struct Patch([Vec3; 5]);
 
 impl Patch {
     #[inline(never)]
-    fn of(stage: &Stage, known: &Known, value: fn(Sample) -> Vec3) -> Patch {
+    fn of(known: &Known, value: fn(Sample) -> Vec3) -> Patch {
         let [a, b, c, d, centre] = known.samples.map(value);
         // A cell that was too small to be split may end on an edge: a bump would dot it.
-        let bend = if stage.quality.study.centre() && known.same_surface() { 16.0 } else { 0.0 };
+        let bend = if known.taken == 5 && known.same_surface() { 16.0 } else { 0.0 };
         let bump = (centre - known.mean(value)) * bend;
         Patch([a, b, c, d, bump])
     }
@@ -79,7 +79,6 @@ pub(super) fn fill(
     let scale = splat(1.0 / cell.size as f32);
     let shift = cell.size.trailing_zeros();
     let patch = Patch::of(
-        stage,
         known,
         match rung {
             Rung::Light if textured => |s| s.colour() - s.irradiance() * s.albedo(),
@@ -87,7 +86,7 @@ pub(super) fn fill(
             Rung::Surface => |s| s.indirect(),
         },
     );
-    let light = (rung == Rung::Light && textured).then(|| Patch::of(stage, known, |s| s.irradiance()));
+    let light = (rung == Rung::Light && textured).then(|| Patch::of(known, |s| s.irradiance()));
     for base in (0..count.div_ceil(8)).map(|i| 8 * i) {
         let place = |lane: usize| {
             let i = base + lane;

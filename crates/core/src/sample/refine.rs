@@ -37,6 +37,8 @@ pub(super) struct Cell {
 pub(super) struct Known<'a> {
     /// Side of the cell, px.
     pub size: usize,
+    /// Samples that were taken; for those that weren't the first corner stands.
+    pub taken: usize,
     pub samples: [Sample<'a>; 5],
 }
 
@@ -46,6 +48,17 @@ impl Cell {
     pub(super) fn point(self, i: usize) -> (usize, usize) {
         let (size, i) = if i < 4 { (self.size, i) } else { (self.size / 2, 3) };
         (self.x + (i & 1) * size, self.y + (i >> 1) * size)
+    }
+
+    /// How many of these samples tell what becomes of it: the centre decides whether a cell is split, the
+    /// corners whether a pixel is on an edge.
+    fn wanted(self, stage: &Stage, measures: bool) -> usize {
+        let quality = &stage.quality;
+        if self.size == 1 && (measures || quality.edge_samples.max(quality.samples) == 0) {
+            1
+        } else {
+            4 + (quality.study.centre() && self.size > quality.smallest as usize) as usize
+        }
     }
 
     /// Whether it has pixels on this side of the scene's line.
@@ -118,18 +131,19 @@ fn refine_side(
     // Level by level: the cells of the next one are appended.
     while done < cells.len() {
         let level = done..cells.len();
-        sample(stage, scratch, &cells[level.clone()], corner, around.shapes);
+        sample(stage, scratch, &cells[level.clone()], corner, around.shapes, measures);
         if done == 0 {
             around.shadows = shadow_casters(stage, &scratch.samples);
         }
         done = level.end;
         for i in level {
             let cell = cells[i];
+            let taken = cell.wanted(stage, measures);
             let at = |i: usize| {
-                let (x, y) = cell.point(if stage.quality.study.centre() { i } else { i & 3 });
+                let (x, y) = cell.point(if i < taken { i } else { 0 });
                 scratch.samples.get(scratch.grid[y * GRID + x] as usize)
             };
-            let known = Known { size: cell.size, samples: std::array::from_fn(at) };
+            let known = Known { size: cell.size, taken, samples: std::array::from_fn(at) };
             if measures {
                 let off = stage.display.map(tile.get(cell.x, cell.y)) - known.samples[0].display();
                 tile.measured[1] += off.dot(off);
@@ -169,12 +183,19 @@ fn refine_side(
 /// Traces the samples of `cells` that are still missing, in the cells' order.
 #[inline(never)]
 #[cfg_attr(luc_size, optimize(size))]
-fn sample(stage: &Stage, scratch: &mut Scratch, cells: &[Cell], corner: (usize, usize), shapes: u64) {
+fn sample(
+    stage: &Stage,
+    scratch: &mut Scratch,
+    cells: &[Cell],
+    corner: (usize, usize),
+    shapes: u64,
+    measures: bool,
+) {
     let Scratch { grid, positions: missing, samples, .. } = scratch;
     missing.clear();
     let before = samples.0.len() * 8;
     for cell in cells {
-        for (x, y) in (0..4 + stage.quality.study.centre() as usize).map(|i| cell.point(i)) {
+        for (x, y) in (0..cell.wanted(stage, measures)).map(|i| cell.point(i)) {
             let slot = &mut grid[y * GRID + x];
             if *slot == u32::MAX {
                 *slot = (before + missing.len()) as u32;

@@ -9,13 +9,20 @@ use crate::math::lanes::{Bound, F, V3, splat};
 use crate::scene::{Channel, Shading};
 use crate::trace::Surface;
 
-/// Schlick's approximation f0 + (f90 - f0)(1 - c)^5, c clamped to 0..1; `f90` is 1 for a smooth surface.
+/// Schlick's approximation f0 + (f90 - f0) w, w = (1 - c)^5, c clamped to 0..1; `f90` is 1 for a smooth surface.
+/// As f0 (1 - w) + f90 w it is rounded less often.
+///
+/// The fifth power would hold five times what rounding takes from m = 1 - c; that is e = (1 - m) - c
+/// exactly (Dekker 1971), and m^4 (m + 5 e) makes it good.
 #[inline(always)]
 pub fn schlick(f0: V3, f90: F, cos: F) -> V3 {
-    let m = F::ONE - cos.at_least(F::ZERO).at_most(F::ONE);
+    let cos = cos.at_least(F::ZERO).at_most(F::ONE);
+    let m = F::ONE - cos;
+    let lost = (F::ONE - m) - cos;
     let m2 = m * m;
-    let w = m2 * m2 * m;
-    f0 + (V3::new(f90, f90, f90) - f0) * w
+    let w = m2 * m2 * (m + lost * splat(5.0));
+    let whole = f90 * w;
+    f0 * (F::ONE - w) + V3::new(whole, whole, whole)
 }
 
 /// Light that goes on behind a surface.

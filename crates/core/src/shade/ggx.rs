@@ -2,7 +2,7 @@
 //!
 //! D = α² / (π s²), s = |n×h|² + (α n·h)²: the sine comes from the cross product, as 1 - (n·h)²
 //! would lose 4u/α² of its digits. Smith's masking and shadowing, height-correlated (Heitz, JCGT
-//! 2014), over 4 n·l n·v: V = ½ / (n·l s_v + n·v s_l), s_x = √(α² (1-x)(1+x) + x²). F: Schlick.
+//! 2014), over 4 n·l n·v: V = ½ / (n·l s_v + n·v s_l), s_x = √(α² + (1-α²) x²). F: Schlick.
 
 use super::fresnel::schlick;
 use crate::math::lanes::{Bound, F, V3, splat};
@@ -23,10 +23,12 @@ pub fn distribution(sine2: F, cos: F, alpha: F) -> F {
     })
 }
 
-/// √(α² sin² + cos²): 2 cos / (cos + this) of the facets are seen under a cosine.
+/// √(α² sin² + cos²): 2 cos / (cos + this) of the facets are seen under a cosine. As α² + (1 - α²) cos² it
+/// holds no difference of cosines.
 #[inline(always)]
 fn smith(cos: F, alpha: F) -> F {
-    (alpha * alpha * ((F::ONE - cos) * (F::ONE + cos)) + cos * cos).sqrt()
+    let square = alpha * alpha;
+    (square + (F::ONE - square) * (cos * cos)).sqrt()
 }
 
 /// Share of the facets that is seen under this cosine, Smith's G1.

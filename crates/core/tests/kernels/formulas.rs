@@ -126,7 +126,7 @@ proptest! {
         prop_assert!((f0..=1.0).contains(&share), "{share}");
         let m = 1.0 - f64::from(cos);
         let want = f64::from(f0) + (1.0 - f64::from(f0)) * m * m * m * m * m;
-        prop_assert!((f64::from(share) - want).abs() <= 12.0 * U * want + 1e-45, "{share} {want}");
+        prop_assert!((f64::from(share) - want).abs() <= 6.5 * U * want + 1e-45, "{share} {want}");
     }
 
     #[test]

@@ -97,8 +97,7 @@ f64 in a form that doesn't cancel.
 - **score**: the error of the nearest crossing in front of the ray over what moving the surface by u (distance + size),
   u = 2⁻²⁴, changes in the exact one, or over half an ulp where that is more. What f32 must lose by rounding the ray alone
   scores about 1; the gate of the tests is 4.
-- **ulp**: the error in units of the last digit of the exact result; the gate is 4. Schlick and Smith's G2 are over it: their
-  arguments to a power and a root are rounded in f32. In f64 those two would keep to the gate, for 0.1 kB of the 64.
+- **ulp**: the error in units of the last digit of the exact result; the gate is 4.
 - **u**: the error over u times the problem's condition, such as the size of the arguments.
 - Worst error first, in brackets what 99 of 100 cases are within. ∞: not a number, or infinite, where the result is neither.
 - **lost/invented**: hits missing though the shape is hit even if smaller by four such units, and hits found though it is
