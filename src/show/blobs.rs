@@ -1,6 +1,6 @@
 //! Blobs: mercury falls into an endless lattice of bronze, which on the drop is cut away around it.
 
-use super::paint::{degrees, key, metal, seconds, swing, times, v};
+use super::paint::{degrees, graded, key, metal, seconds, swing, times, v};
 use super::score;
 use super::still::{Panel, Still};
 use luc_core::math::scalar::exp;
@@ -111,7 +111,7 @@ static STILL: Still = Still {
         lo: v(-40.0, -30.0, -60.0),
         hi: v(40.0, 30.0, -1.6),
     }),
-    grade: Grade {
+    grade: graded(Grade {
         bloom: 0.6,
         lift: v(0.01, 0.003, 0.012),
         gamma: v(0.9, 0.88, 0.88),
@@ -119,7 +119,7 @@ static STILL: Still = Still {
         vignette: 0.2,
         grain: 0.007,
         ..Grade::DEFAULT
-    },
+    }),
     ..Still::NOTHING
 };
 

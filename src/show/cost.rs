@@ -4,7 +4,7 @@
 //! Under it stands what each side cost in rays, and how far the right one is off, in dB, of this very frame.
 
 use super::facets::cathedral;
-use super::paint::{bumps, degrees, key, polished, seconds, surface, times, v};
+use super::paint::{angle, bumps, graded, key, polished, seconds, surface, times, v};
 use super::score;
 use super::still::{Lamp, Still};
 use super::text::{Line, write};
@@ -57,7 +57,7 @@ static STILL: Still = Still {
         lo: v(-40.0, -0.1, -60.0),
         hi: v(40.0, 30.0, 5.0),
     }),
-    grade: Grade {
+    grade: graded(Grade {
         bloom: 0.4,
         lift: v(0.014, 0.006, 0.03),
         gamma: v(0.87, 0.86, 0.9),
@@ -65,7 +65,7 @@ static STILL: Still = Still {
         vignette: 0.16,
         grain: 0.007,
         ..Grade::DEFAULT
-    },
+    }),
     ..Still::NOTHING
 };
 
@@ -100,7 +100,7 @@ fn titles(figures: &Figures) -> Scene {
     // The plane one unit ahead is two units wide.
     scene.camera.position = Vec3::ZERO;
     scene.camera.target = Vec3::NEG_Z;
-    scene.camera.fov = degrees(90.0);
+    scene.camera.fov = angle(90.0);
     (scene.grade.bloom_threshold, scene.grade.bloom) = (0.9, 0.5);
     let height = figures.height;
     let split = &figures.split;
@@ -145,7 +145,7 @@ pub fn scene(frame: u64) -> Scene {
     let x = track(&X, t);
     let mut s = STILL.scene();
     let position = Vec3::new(1.9, 2.4, 7.2 + t / 24.0);
-    s.camera = Camera { position, target: v(-1.1, 4.5, -12.0), roll: degrees(-2.0), fov: degrees(52.0) };
+    s.camera = Camera { position, target: v(-1.1, 4.5, -12.0), roll: angle(-2.0), fov: angle(52.0) };
     s.meshes = cathedral(20.0, 8, false);
     s.lights[1].kind = LightKind::Fill;
     s.effects = DRAWING.to_vec();

@@ -37,7 +37,7 @@ pub fn scene(frame: u64) -> Scene {
     for (stop, colour) in scene.background.stops.iter_mut().zip(SKY) {
         stop.colour = colour.lerp(stop.colour, back);
     }
-    let colour = times(v(0.42, 0.15, 0.035), warm);
+    let colour = v(0.42, 0.15, 0.035) * warm;
     let direction = v(0.2, 0.03, -0.98);
     scene.background.glows.push(Glow { direction, colour, sharpness: 60.0 });
     if let Some(fog) = &mut scene.fog {
@@ -65,19 +65,23 @@ pub fn scene(frame: u64) -> Scene {
     }
     // Long swells break what the floor mirrors into streaks.
     scene.materials[3].texture = Texture { scale: 0.45, bump: 0.12 * warm, ..Texture::NONE };
-    scene.lights[0].colour = times(v(1.0, 0.7, 0.38), 0.91 * near);
+    scene.lights[0].colour = v(1.0, 0.7, 0.38) * (0.91 * near);
     for beam in &mut scene.beams[..2] {
         beam.from = at(-30.0);
         beam.to = at(-3.46).lerp(beam.to, back);
         beam.width *= 1.0 + 0.5 * warm;
         beam.colour = (beam.colour * v(1.5, 0.95, 0.56)).lerp(beam.colour, back);
     }
-    scene.beams[5].colour = times(v(1.0, 0.78, 0.48), 2.0 * near);
+    scene.beams[5].colour = v(1.0, 0.78, 0.48) * (2.0 * near);
     scene.beams[5].width = 0.19;
 
     let camera = &mut scene.camera;
     camera.position = Vec3::new(-8.06 + 0.03 * t, 3.31, 31.1 - 0.1 * t).lerp(camera.position, back);
     camera.target = v(-4.35, 1.85, 8.87).lerp(camera.target, back);
+    // The words go out with it.
+    if near == 0.0 {
+        return scene;
+    }
     for (k, words) in WORDS.into_iter().enumerate() {
         let k = k as f32;
         let line = Line {
@@ -86,7 +90,7 @@ pub fn scene(frame: u64) -> Scene {
             right: 0.19,
             up: v(0.0, 0.0, -0.34),
             width: 0.035,
-            colour: times(v(1.0, 0.52, 0.18), 1.5 * near),
+            colour: v(1.0, 0.52, 0.18) * (1.5 * near),
         };
         write(&mut scene.beams, &line, camera.position, (t - 0.2 - LINES * k) * 12.0);
     }

@@ -3,7 +3,7 @@
 //! All of it follows from six small rules for one side of one bay and the rose; instances mirror,
 //! place and grow them. The camera waits at the portal, flies down the nave and looks up.
 
-use super::paint::{bumps, degrees, key, polished, seconds, surface, times, v};
+use super::paint::{angle, bumps, degrees, graded, key, polished, seconds, surface, times, v};
 use super::score;
 use super::still::{Lamp, Still};
 use luc_core::math::hash::{hash2, unit};
@@ -262,7 +262,7 @@ static STILL: Still = Still {
         lo: v(-40.0, -0.1, -60.0),
         hi: v(40.0, 30.0, 5.0),
     }),
-    grade: Grade {
+    grade: graded(Grade {
         exposure: 1.12,
         bloom: 0.38,
         lift: v(0.0, 0.01, 0.03),
@@ -271,7 +271,7 @@ static STILL: Still = Still {
         vignette: 0.18,
         grain: 0.007,
         ..Grade::DEFAULT
-    },
+    }),
     ..Still::NOTHING
 };
 
@@ -283,7 +283,7 @@ pub fn scene(frame: u64) -> Scene {
     let tilt = track(&TILT, t);
     let target = position + Vec3::new(0.1, tilt, -1.0);
     let mut s = STILL.scene();
-    s.camera = Camera { position, target, roll: degrees(track(&ROLL, t)), fov: degrees(54.0) };
+    s.camera = Camera { position, target, roll: degrees(track(&ROLL, t)), fov: angle(54.0) };
     for glow in &mut s.background.glows {
         glow.direction = (ROSE - position).normalize();
         glow.colour *= 1.0 + 0.4 * pulse(&KICK, frame, 7.0);

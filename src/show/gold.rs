@@ -1,7 +1,7 @@
 //! Gold: three gold spheres that flow into one another, between two leaning glass cylinders, on a
 //! navy square of two triangles that floats in azure. The last 4 s show how it was sampled.
 
-use super::paint::{degrees, glass, key, metal, orbit, polished, seconds, swing, times, v};
+use super::paint::{angle, glass, graded, key, metal, orbit, polished, seconds, short, swing, times, v};
 use super::score;
 use super::still::{Lamp, Panel, Still};
 use luc_core::math::scalar::sin_cos;
@@ -31,7 +31,7 @@ fn bar(a: Vec3, b: Vec3, turn: f32, material: usize) -> Cylinder {
 
 /// A ball of gold.
 const fn gold(x: f32, y: f32, z: f32, radius: f32) -> Sphere {
-    Sphere { centre: Vec3::new(x, y, z), radius, material: 0, blend: 0.8 }
+    Sphere { centre: v(x, y, z), radius: short(radius), material: 0, blend: 0.8 }
 }
 
 static STILL: Still = Still {
@@ -69,7 +69,7 @@ static STILL: Still = Still {
     ],
     shading: Shading::CookTorrance,
     ambient: [v(0.05, 0.09, 0.2), v(0.2, 0.3, 0.5)],
-    grade: Grade {
+    grade: graded(Grade {
         bloom: 0.3,
         lift: v(0.0, 0.006, 0.03),
         gamma: v(0.9, 0.89, 0.95),
@@ -77,7 +77,7 @@ static STILL: Still = Still {
         vignette: 0.14,
         grain: 0.007,
         ..Grade::DEFAULT
-    },
+    }),
     ..Still::NOTHING
 };
 
@@ -90,7 +90,7 @@ pub fn scene(frame: u64) -> Scene {
     let [a, b, c, d] = [0.0, 1.0, 2.0, 3.0].map(|k| orbit((24.0 + 90.0 * k) / 360.0, 3.3, 0.0));
 
     let mut s = STILL.scene();
-    s.camera = Camera { position, target, roll: degrees(-2.0), fov: degrees(41.0) };
+    s.camera = Camera { position, target, roll: angle(-2.0), fov: angle(41.0) };
     for (ball, (period, phase)) in s.spheres.iter_mut().zip([(5.0, 0.0), (7.0, 0.3), (8.3, 0.6)]) {
         ball.centre.y += 0.6 * (0.25 * swing(t, period, phase));
     }

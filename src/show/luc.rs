@@ -1,6 +1,6 @@
 //! Lúč: a cold beam crosses the black and sets three letters on fire, one after another.
 
-use super::paint::{degrees, key, metal, polished, seconds, swing, times, v};
+use super::paint::{angle, graded, key, metal, polished, seconds, swing, times, v};
 use super::score;
 use super::still::{Lamp, Panel, Still};
 use super::text::{Line, write};
@@ -175,14 +175,14 @@ static STILL: Still = Still {
         lo: v(-40.0, -0.1, -60.0),
         hi: v(40.0, 14.0, 3.0),
     }),
-    grade: Grade {
+    grade: graded(Grade {
         bloom: 0.55,
         lift: v(0.004, 0.008, 0.02),
         gamma: v(1.0, 1.0, 1.04),
         vignette: 0.2,
         grain: 0.007,
         ..Grade::DEFAULT
-    },
+    }),
     ..Still::NOTHING
 };
 
@@ -227,8 +227,8 @@ pub fn scene(frame: u64) -> Scene {
     scene.camera = Camera {
         position: Vec3::new(-2.6 + 0.74 * way, 1.15, 12.6 - 0.8 * way),
         target: v(-0.15, 1.34, 0.0),
-        roll: degrees(-1.2),
-        fov: degrees(44.0),
+        roll: angle(-1.2),
+        fov: angle(44.0),
     };
     write(&mut scene.beams, &LINE, scene.camera.position, track(&SHOWN, t));
     scene

@@ -4,7 +4,9 @@
 //! by itself; two glass balls circle at different heights in opposite directions, one with an
 //! ember inside. Everything stands on a dark mirror.
 
-use super::paint::{degrees, glass, grain, key, metal, orbit, polished, seconds, swing, times, v};
+use super::paint::{
+    angle, degrees, glass, graded, grain, key, metal, orbit, polished, seconds, swing, times, v,
+};
 use super::score;
 use super::still::{Lamp, Panel, Still};
 use luc_core::math::Vec3;
@@ -115,7 +117,7 @@ static STILL: Still = Still {
         lo: v(-80.0, -0.2, -80.0),
         hi: v(80.0, 5.0, -7.0),
     }),
-    grade: Grade {
+    grade: graded(Grade {
         bloom_threshold: 1.1,
         bloom: 0.4,
         lift: v(0.0, 0.006, 0.02),
@@ -123,7 +125,7 @@ static STILL: Still = Still {
         vignette: 0.18,
         grain: 0.007,
         ..Grade::DEFAULT
-    },
+    }),
     ..Still::NOTHING
 };
 
@@ -138,7 +140,7 @@ pub fn scene(frame: u64) -> Scene {
     let away = orbit(turn / std::f32::consts::TAU, track(&DISTANCE, t), -0.05);
 
     let mut s = STILL.scene();
-    s.camera = Camera { position: target + away, target, roll: degrees(1.5), fov: degrees(43.0) };
+    s.camera = Camera { position: target + away, target, roll: angle(1.5), fov: angle(43.0) };
     s.spheres[0].centre.y += ball;
     s.spheres[1].centre = ember;
     s.spheres[2].centre = ember;
@@ -162,7 +164,10 @@ mod tests {
     fn the_ball_never_enters_the_upper_cone() {
         for frame in 0..32 * super::super::FPS {
             let (ball, cone) = lift(seconds(frame));
-            assert!(ball <= cone && ball >= 0.0 && cone <= 0.9 + 1e-6, "frame {frame}: {ball} over {cone}");
+            assert!(
+                ball <= cone && ball >= 0.0 && cone <= super::super::paint::short(0.9),
+                "frame {frame}: {ball} over {cone}"
+            );
         }
     }
 }

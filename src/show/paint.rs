@@ -2,7 +2,7 @@
 
 use luc_core::math::Vec3;
 use luc_core::math::scalar::{sin, sin_cos};
-use luc_core::scene::{Ease, Key, Material, Texture};
+use luc_core::scene::{Ease, Grade, Key, Material, Texture};
 use std::f32::consts::{PI, TAU};
 
 use super::FPS;
@@ -45,6 +45,23 @@ pub const fn degrees(x: f32) -> f32 {
     x * (PI / 180.0)
 }
 
+/// Degrees that stand still, as radians.
+pub const fn angle(x: f32) -> f32 {
+    short(degrees(x))
+}
+
+/// A grade of short numbers.
+pub const fn graded(grade: Grade) -> Grade {
+    Grade {
+        exposure: short(grade.exposure),
+        bloom: short(grade.bloom),
+        bloom_threshold: short(grade.bloom_threshold),
+        vignette: short(grade.vignette),
+        grain: short(grade.grain),
+        ..grade
+    }
+}
+
 /// A key of a track.
 pub const fn key(time: f32, value: f32, ease: Ease) -> Key {
     Key { time, value: short(value), ease }
@@ -52,12 +69,12 @@ pub const fn key(time: f32, value: f32, ease: Ease) -> Key {
 
 /// A bare metal: no diffuse part, mirrors in its own colour.
 pub const fn metal(f0: Vec3, roughness: f32) -> Material {
-    Material { diffuse: 0.0, f0, roughness, reflection: 1.0, ..Material::DEFAULT }
+    Material { diffuse: 0.0, f0, roughness: short(roughness), reflection: 1.0, ..Material::DEFAULT }
 }
 
 /// A polished body with a diffuse part under a clear surface.
 pub const fn polished(colour: Vec3, roughness: f32, ior: f32) -> Material {
-    Material { colour, f0: f0(ior), roughness, reflection: 1.0, ior, ..Material::DEFAULT }
+    Material { colour, f0: f0(ior), roughness: short(roughness), reflection: 1.0, ior, ..Material::DEFAULT }
 }
 
 /// A surface of microfacets for GGX: mirrors in its colour by the metallic part, as a body of
@@ -66,7 +83,14 @@ pub const fn surface(colour: Vec3, roughness: f32, metallic: f32) -> Material {
     let rest = 0.034 * (1.0 - metallic);
     let [red, green, blue] = colour.to_array();
     let f0 = v(rest + red * metallic, rest + green * metallic, rest + blue * metallic);
-    Material { colour, diffuse: 1.0 - metallic, specular: Vec3::ONE, f0, roughness, ..Material::DEFAULT }
+    Material {
+        colour,
+        diffuse: short(1.0 - metallic),
+        specular: Vec3::ONE,
+        f0,
+        roughness: short(roughness),
+        ..Material::DEFAULT
+    }
 }
 
 /// Albedo that varies by `amount`, with `scale` cells per world unit.
@@ -76,7 +100,7 @@ pub const fn grain(scale: f32, amount: f32) -> Texture {
 
 /// Relief `depth` high, of which `strength` shows, with `scale` cells per world unit.
 pub const fn bumps(scale: f32, strength: f32, depth: f32) -> Texture {
-    Texture { scale, bump: strength * depth, ..Texture::NONE }
+    Texture { scale: short(scale), bump: short(strength * depth), ..Texture::NONE }
 }
 
 /// A clear body: `tint` at each surface, `shadow` on light through all of it.

@@ -1,7 +1,7 @@
 //! Smoke: a small house of voxels in the evening sun, in violet light from the other side, turns into
 //! smoke layer by layer, until only its window is left.
 
-use super::paint::{degrees, key, orbit, seconds, surface, swing, times, v};
+use super::paint::{angle, graded, key, orbit, seconds, surface, swing, times, v};
 use super::still::{Lamp, Still};
 use luc_core::math::Vec3;
 use luc_core::math::hash::{hash2, mix, unit};
@@ -147,7 +147,7 @@ static STILL: Still = Still {
         lo: v(-90.0, -0.2, -90.0),
         hi: v(90.0, 4.0, -5.0),
     }),
-    grade: Grade {
+    grade: graded(Grade {
         bloom: 0.55,
         lift: v(0.016, 0.004, 0.022),
         gamma: v(0.88, 0.87, 0.9),
@@ -155,7 +155,7 @@ static STILL: Still = Still {
         vignette: 0.2,
         grain: 0.007,
         ..Grade::DEFAULT
-    },
+    }),
     ..Still::NOTHING
 };
 
@@ -169,7 +169,7 @@ pub fn scene(frame: u64) -> Scene {
     let way = t / 24.0;
     let target = Vec3::new(0.7, 1.5 + 0.25 * way, 0.0);
     let position = orbit(-0.0545 + 0.042 * way, 9.24, 1.55 + 0.6 * way);
-    scene.camera = Camera { position, target, roll: degrees(1.5), fov: degrees(43.0) };
+    scene.camera = Camera { position, target, roll: angle(1.5), fov: angle(43.0) };
     let breath = 1.0 + 0.08 * swing(t, 4.0, 0.0);
     for light in &mut scene.lights {
         light.colour *= breath;

@@ -5,7 +5,7 @@
 //! run down the stream as waves. What is seen of them are beams without length.
 
 use super::facets::{self, BAY, Dice, SIDE, Triangles};
-use super::paint::{degrees, key, seconds, surface, swing, times, v};
+use super::paint::{angle, degrees, graded, key, seconds, surface, swing, times, v};
 use super::score;
 use super::still::{Lamp, Panel, Still};
 use luc_core::math::scalar::{cos, sin};
@@ -211,7 +211,7 @@ static STILL: Still = Still {
         lo: v(-200.0, -4.0, -200.0),
         hi: v(200.0, 1.4, 4.0),
     }),
-    grade: Grade {
+    grade: graded(Grade {
         bloom_threshold: 0.9,
         bloom: 0.5,
         lift: v(0.008, 0.004, 0.024),
@@ -220,7 +220,7 @@ static STILL: Still = Still {
         vignette: 0.2,
         grain: 0.007,
         ..Grade::DEFAULT
-    },
+    }),
     ..Still::NOTHING
 };
 
@@ -232,7 +232,7 @@ pub fn scene(frame: u64) -> Scene {
     let position = curve(&FLIGHT, back);
     let way = back / 3.0;
     let target = v(10.4, 3.2, -32.0).lerp(v(1.2, 3.0, -10.0), way);
-    s.camera = Camera { position, target, roll: degrees(-1.5), fov: degrees(60.0 - 12.0 * way) };
+    s.camera = Camera { position, target, roll: angle(-1.5), fov: degrees(60.0 - 12.0 * way) };
     s.grade.bloom += 0.4 * pulse(&KICK, frame, 5.0);
     s.meshes = land();
     s.soft = true;

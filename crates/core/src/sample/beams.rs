@@ -30,29 +30,38 @@ pub fn beams(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize), tile:
         let middle = stage.on_screen(corner.0 as f32 + half, corner.1 as f32 + half);
         (middle, Vec2::splat(half * stage.pixel))
     };
-    let whole = square(corner, TILE);
-    for (light, dop) in stage.scene.beams.iter().zip(&stage.beams) {
-        if !dop.meets_rectangle(whole.0, whole.1) {
+    let meets = |i: usize, (middle, half): (Vec2, Vec2)| stage.beams[i].meets_rectangle(middle, half);
+    // Beams that meet the tile, and behind them those that meet a block of it.
+    let Scratch { beams: met, counters, .. } = scratch;
+    met.clear();
+    met.extend((0..stage.beams.len()).filter(|&i| meets(i, square(corner, TILE))));
+    let of_tile = met.len();
+    for block in 0..(TILE / BLOCK) * (TILE / BLOCK) {
+        let (x, y) = (block % (TILE / BLOCK) * BLOCK, block / (TILE / BLOCK) * BLOCK);
+        let (left, top) = ((corner.0 + x) as f32, (corner.1 + y) as f32);
+        met.truncate(of_tile);
+        for k in 0..of_tile {
+            if meets(met[k], square((corner.0 + x, corner.1 + y), BLOCK)) {
+                met.push(met[k]);
+            }
+        }
+        let of_block = &met[of_tile..];
+        if of_block.is_empty() {
             continue;
         }
-        for block in 0..(TILE / BLOCK) * (TILE / BLOCK) {
-            let (x, y) = (block % (TILE / BLOCK) * BLOCK, block / (TILE / BLOCK) * BLOCK);
-            let (left, top) = ((corner.0 + x) as f32, (corner.1 + y) as f32);
-            let (middle, half) = square((corner.0 + x, corner.1 + y), BLOCK);
-            if !dop.meets_rectangle(middle, half) {
-                continue;
+        counters.add(Counter::Beams, BLOCK * BLOCK * of_block.len());
+        for row in 0..BLOCK {
+            let at = (y + row) * TILE + x;
+            let direction = stage.directions(splat(left + 0.5) + RAMP, splat(top + 0.5 + row as f32));
+            let rays = Rays8 { origin: V3::splat(stage.scene.camera.position), direction };
+            let end = F::ONE / (load(&tile.nearness[at..]) * direction.dot(forward));
+            let [red, green, blue] = tile.rgb.each_ref().map(|plane| load(&plane[at..]));
+            let mut sum = V3::new(red, green, blue);
+            for &i in of_block {
+                sum += beam(&stage.scene.beams[i], &rays, splat(stage.pixel), end);
             }
-            scratch.counters.add(Counter::Beams, BLOCK * BLOCK);
-            for row in 0..BLOCK {
-                let at = (y + row) * TILE + x;
-                let direction = stage.directions(splat(left + 0.5) + RAMP, splat(top + 0.5 + row as f32));
-                let rays = Rays8 { origin: V3::splat(stage.scene.camera.position), direction };
-                let end = F::ONE / (load(&tile.nearness[at..]) * direction.dot(forward));
-                let add = beam(light, &rays, splat(stage.pixel), end);
-                for (plane, add) in tile.rgb.iter_mut().zip([add.x, add.y, add.z]) {
-                    let sum = load(&plane[at..]) + add;
-                    plane[at..at + 8].copy_from_slice(sum.as_array());
-                }
+            for (plane, sum) in tile.rgb.iter_mut().zip([sum.x, sum.y, sum.z]) {
+                plane[at..at + 8].copy_from_slice(sum.as_array());
             }
         }
     }

@@ -37,6 +37,8 @@ pub struct Scratch {
     next: RayList,
     hits: Vec<Hits>,
     occluders: Boxes,
+    /// Indices of beams.
+    pub(super) beams: Vec<usize>,
 }
 
 /// Bounds of the hit points of each shape in a list of rays, lane by lane.
