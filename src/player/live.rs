@@ -1,6 +1,6 @@
 //! Live quality: the best level that holds 60 frames a second, found from measured render times.
 //!
-//! Levels are the presets, and under them smaller pictures. Going down is quick, because lost frames are
+//! Levels are presets, and pictures of fewer pixels under them. Going down is quick, because lost frames are
 //! seen; going up is slow and needs room to spare, because the next level costs more. An ascent that fails
 //! doubles the wait before the next one, so a machine between two levels settles instead of flickering
 //! between them.

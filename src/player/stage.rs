@@ -19,13 +19,18 @@ use std::sync::atomic::{AtomicBool, AtomicU32, AtomicUsize, Ordering::Relaxed};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Levels of live quality below the first preset: that preset on this many twelfths of the picture's sides.
-/// Sharpness is missed less than motion.
-const SMALLER: [usize; 3] = [4, 6, 8];
-/// The levels of three presets. Playing starts at the middle one; the one above the last is for measuring.
-const DRAFT: usize = SMALLER.len();
-const MEDIUM: usize = DRAFT + 2;
-const ULTRA: usize = DRAFT + Quality::PRESETS.len() - 2;
+/// Levels of live quality: a preset, and on how many twelfths of the picture's sides it draws. Each costs at
+/// most about twice as much as the one before it. A preset on fewer pixels shows more than the one under it on
+/// all, for less: see ARCHITECTURE.md.
+const LEVELS: [(usize, usize); 7] =
+    [(LOW, 4), (MEDIUM, 4), (MEDIUM, 6), (MEDIUM, 8), (MEDIUM, 12), (HIGH, 12), (ULTRA, 12)];
+/// Where it starts.
+const MIDDLE: usize = 3;
+/// Presets; the one above the last is for measuring.
+const LOW: usize = 1;
+const MEDIUM: usize = 2;
+const HIGH: usize = 3;
+const ULTRA: usize = 4;
 
 /// A finished frame.
 #[derive(Default)]
@@ -122,10 +127,10 @@ impl Stage {
         let mut renderer = ManuallyDrop::new(Renderer::default());
         let mut picture = Picture::default();
         for part in self.parts.clone() {
-            self.draw(&mut renderer, show::start(part), DRAFT, &mut picture);
+            self.draw(&mut renderer, show::start(part), LEVELS[0], &mut picture);
             self.prepared.fetch_add(1, Relaxed);
         }
-        let mut live = Live::new(MEDIUM, ULTRA);
+        let mut live = Live::new(MIDDLE, LEVELS.len() - 1);
         let mut last = None;
         loop {
             let Some(elapsed) = self.pace.elapsed() else {
@@ -139,7 +144,7 @@ impl Stage {
             }
             last = Some(n);
             let began = Instant::now();
-            let level = self.quality.map_or(live.level(), |preset| DRAFT + preset);
+            let level = self.quality.map_or(LEVELS[live.level()], |preset| (preset, 12));
             self.draw(&mut renderer, n, level, &mut picture);
             live.measured(began.elapsed());
             let mut newest = self.newest();
@@ -150,16 +155,21 @@ impl Stage {
     }
 
     /// Draws frame `n` no larger than the window: what would be scaled down need not be drawn.
-    fn draw(&self, renderer: &mut Renderer, n: u64, level: usize, picture: &mut Picture) {
+    fn draw(
+        &self,
+        renderer: &mut Renderer,
+        n: u64,
+        (preset, twelfths): (usize, usize),
+        picture: &mut Picture,
+    ) {
         let room = self.room.load(Relaxed);
         let fitted = fit::rect(self.size, ((room >> 16) as usize, (room & 0xffff) as usize));
         let (width, height) = self.size;
-        let share = SMALLER.get(level).unwrap_or(&12);
-        let side = |full: usize| (full * share / 12).max(1);
+        let side = |full: usize| (full * twelfths / 12).max(1);
         picture.size = (side(width.min(fitted.width)), side(height.min(fitted.height)));
         let (width, height) = picture.size;
         picture.pixels.resize(width * height, 0);
-        let quality = &Quality::PRESETS[level.saturating_sub(DRAFT)].1;
+        let quality = &Quality::PRESETS[preset].1;
         show::frame(renderer, n, (width as u32, height as u32), quality, &mut picture.pixels);
     }
 }
@@ -177,23 +187,21 @@ mod tests {
 
     #[test]
     fn live_quality_moves_between_the_presets_meant_for_playing() {
-        let name = |level: usize| Quality::PRESETS[level - DRAFT].0;
-        assert_eq!([DRAFT, MEDIUM, ULTRA].map(name), ["draft", "medium", "ultra"]);
+        let name = |preset: usize| Quality::PRESETS[preset].0;
+        assert_eq!([LOW, MEDIUM, HIGH, ULTRA].map(name), ["low", "medium", "high", "ultra"]);
+        assert!(LEVELS.is_sorted(), "no level is better than the next");
     }
 
     #[test]
-    fn below_draft_the_picture_shrinks_in_its_shape() {
+    fn a_picture_on_fewer_pixels_keeps_its_shape() {
         let stage = Stage::new(&Options { size: (240, 120), ..options() }, (240, 120));
         let mut picture = Picture::default();
-        let mut sizes = Vec::new();
-        for level in 0..=DRAFT + 1 {
-            stage.draw(&mut Renderer::default(), 0, level, &mut picture);
-            assert_eq!(picture.pixels.len(), picture.size.0 * picture.size.1);
-            sizes.push(picture.size);
+        for (level, size) in [(1, (80, 40)), (2, (120, 60)), (3, (160, 80)), (4, (240, 120))] {
+            stage.draw(&mut Renderer::default(), 0, LEVELS[level], &mut picture);
+            assert_eq!((picture.size, picture.pixels.len()), (size, size.0 * size.1));
         }
-        assert_eq!(sizes, [(80, 40), (120, 60), (160, 80), (240, 120), (240, 120)]);
         let tiny = Stage::new(&Options { size: (1, 2), ..options() }, (240, 120));
-        tiny.draw(&mut Renderer::default(), 0, 0, &mut picture);
+        tiny.draw(&mut Renderer::default(), 0, LEVELS[0], &mut picture);
         assert_eq!(picture.size, (1, 1));
     }
 
@@ -204,6 +212,7 @@ mod tests {
             from: show::PARTS[0].frames - 3,
             scene: Some(0),
             size: (32, 18),
+            quality: Some(LOW),
             ..options()
         };
         let stage = Stage::new(&o, (64, 64));
@@ -221,10 +230,10 @@ mod tests {
     fn a_smaller_window_is_drawn_smaller_in_the_same_shape() {
         let stage = Stage::new(&Options { size: (320, 180), ..options() }, (160, 400));
         let mut picture = Picture::default();
-        stage.draw(&mut Renderer::default(), 0, DRAFT, &mut picture);
+        stage.draw(&mut Renderer::default(), 0, (LOW, 12), &mut picture);
         assert_eq!(picture.size, (160, 90));
         stage.set_room((4000, 3000));
-        stage.draw(&mut Renderer::default(), 0, DRAFT, &mut picture);
+        stage.draw(&mut Renderer::default(), 0, (LOW, 12), &mut picture);
         assert_eq!(picture.size, (320, 180));
     }
 }
