@@ -21,15 +21,20 @@ fn peak(id: u32) -> f64 {
     children.split_whitespace().filter_map(|id| id.parse().ok()).map(peak).fold(own, f64::max)
 }
 
-/// Plays a part once and tells the peak, MiB.
-fn play(program: &Path, part: &str, size: &str) -> Result<f64, String> {
+/// Plays a part once and tells the peaks, MiB: of all, and of the program that plays last. The system counts anew
+/// when a packed file becomes what it unpacked.
+fn play(program: &Path, part: &str, size: &str) -> Result<(f64, f64), String> {
     let fault = |e: std::io::Error| format!("{}: {e}", program.display());
     let mut command = Command::new(program);
     command.args(["--scene", part, "--once", "--mute", "--quality", "high", "--size", size]);
     let mut child = command.stderr(Stdio::piped()).spawn().map_err(fault)?;
-    let mut most = 0.0_f64;
+    let (mut most, mut last) = (0.0_f64, 0.0);
     loop {
-        most = most.max(peak(child.id()));
+        let now = peak(child.id());
+        // A process that has ended holds nothing.
+        if now > 0.0 {
+            (most, last) = (most.max(now), now);
+        }
         if child.try_wait().map_err(fault)?.is_some() {
             break;
         }
@@ -37,7 +42,7 @@ fn play(program: &Path, part: &str, size: &str) -> Result<f64, String> {
     }
     let done = child.wait_with_output().map_err(fault)?;
     match done.status.success() {
-        true => Ok(most),
+        true => Ok((most, last)),
         false => Err(String::from_utf8_lossy(&done.stderr).into_owned()),
     }
 }
@@ -47,10 +52,10 @@ pub fn run(args: &[String]) -> Result<(), String> {
     let program = args.first().ok_or("which program? such as target/pack/luc or target/release/luc")?;
     let size = args.get(1).map_or("1920x1080", String::as_str);
     crate::args::size(size)?;
-    println!("| part | most MiB resident at {size} |\n|---|---:|");
+    println!("| part | most MiB resident at {size} | of which playing |\n|---|---:|---:|");
     for part in luc::show::PARTS {
         match play(Path::new(program), part.name, size) {
-            Ok(most) => println!("| {} | {most:.0} |", part.name),
+            Ok((most, playing)) => println!("| {} | {most:.0} | {playing:.0} |", part.name),
             // The packed file has not all parts.
             Err(said) if said.contains("--scene wants one of") => {}
             Err(said) => return Err(said),
