@@ -111,7 +111,7 @@ pub fn triangle(ray: &Ray, corners: [Vec3; 3]) -> Option<TriangleHit> {
     let rays = ray.packet();
     let span = trace::triangle(&rays, &Triangle { corners: corners.map(Into::into), material: 0 });
     let t = ahead(&span)?.enter;
-    let crossing = Aim::new(&rays).cross(&corners.map(V3::splat));
+    let crossing = Aim::new(&rays).cross(&corners.map(V3::splat))?;
     Some(TriangleHit { t, weights: crossing.weights.map(|w| first(w / crossing.sum)) })
 }
 

@@ -5,7 +5,7 @@ use crate::bvh::{Bounds, Tree};
 use crate::features;
 use crate::math::lanes::{F, V3, splat};
 use crate::math::{Mat3, Vec3};
-use crate::trace::{Aim, Rays8, Span};
+use crate::trace::{Aim, Crossing, Rays8, Span};
 use std::sync::Arc;
 
 /// A mesh at a place: `world = world_from_mesh * p + origin`.
@@ -98,7 +98,7 @@ impl Instance {
     /// Where rays cross a facet.
     pub fn span(&self, facet: usize, rays: &Rays8) -> Span {
         let corners = self.mesh.triangles[facet].map(V3::splat);
-        let crossing = Aim::new(&self.local(rays)).cross(&corners);
+        let crossing = Aim::new(&self.local(rays)).cross(&corners).unwrap_or(Crossing::NONE);
         Span::single(crossing.t, crossing.hit)
     }
 
@@ -110,7 +110,7 @@ impl Instance {
         let last = self.mesh.triangles.len() - 1;
         let index = index.to_array().map(|i| (i as usize).min(last));
         let corners = gather(&self.mesh.triangles, index);
-        let crossing = Aim::new(&self.local(rays)).cross(&corners);
+        let crossing = Aim::new(&self.local(rays)).cross(&corners).unwrap_or(Crossing::NONE);
         let weights = crossing.weights.map(|w| w / crossing.sum);
         let mean = |[a, b, c]: [V3; 3]| a * weights[0] + b * weights[1] + c * weights[2];
         let [a, b, c] = corners;

@@ -32,7 +32,7 @@ fn spread(v: V3) -> F {
 /// or any: then a hit ends the ray, at -1.
 #[inline(never)]
 fn keep(aim: &Aim, corners: &[V3; 3], id: F, any: bool, best: &mut Hits) {
-    let crossing = aim.cross(corners);
+    let Some(crossing) = aim.cross(corners) else { return };
     let nearer = crossing.t.simd_lt(best.t) | (crossing.t.simd_eq(best.t) & id.simd_lt(best.id));
     let closer = crossing.hit & crossing.t.simd_gt(F::ZERO) & nearer;
     let t = if any { splat(-1.0) } else { crossing.t };
@@ -58,22 +58,25 @@ impl Assembly {
         let asked =
             wanted & rays.origin.max_abs().simd_lt(splat(FAR)) & rays.direction.max_abs().simd_lt(splat(FAR));
         let mut todo = asked.to_bitmask();
-        while todo != 0 && !self.is_empty() {
-            // Lanes that aren't asked about run with the first that is.
+        if todo == 0 || self.is_empty() {
+            return;
+        }
+        // Lanes that aren't asked about run with the first that is.
+        let first = todo.trailing_zeros() as usize & 7;
+        let one = |v: V3, lane: usize| V3::splat(v.lane(lane));
+        let bundle = Rays8 {
+            origin: V3::select(asked, rays.origin, one(rays.origin, first)),
+            direction: V3::select(asked, rays.direction, one(rays.direction, first)),
+        };
+        let close = spread(bundle.direction).simd_lt(greatest(bundle.direction.max_abs()) * splat(SPREAD))
+            & spread(bundle.origin).simd_lt(greatest(bundle.origin.max_abs()) * splat(APART));
+        let single = !close.all();
+        while todo != 0 {
             let first = todo.trailing_zeros() as usize & 7;
-            let one = |v: V3| V3::splat(v.lane(first));
-            let bundle = Rays8 {
-                origin: V3::select(asked, rays.origin, one(rays.origin)),
-                direction: V3::select(asked, rays.direction, one(rays.direction)),
-            };
-            let close = spread(bundle.direction)
-                .simd_lt(greatest(bundle.direction.max_abs()) * splat(SPREAD))
-                & spread(bundle.origin).simd_lt(greatest(bundle.origin.max_abs()) * splat(APART));
-            let single = !close.all();
             let of_first = |v: F| splat(v.as_array()[first]);
             let mut found = Hits { t: of_first(best.t), id: of_first(best.id) };
             if single {
-                let ray = Rays8 { origin: one(rays.origin), direction: one(rays.direction) };
+                let ray = Rays8 { origin: one(rays.origin, first), direction: one(rays.direction, first) };
                 self.walk(scene, &ray, (true, any), &mut found, counters);
                 todo &= todo - 1;
             } else {

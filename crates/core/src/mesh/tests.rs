@@ -8,7 +8,7 @@ use crate::math::scalar::sin_cos;
 use crate::quality::Quality;
 use crate::scene::{Material, Scene, Sphere, Triangle};
 use crate::trace::check::{Random, packet, poisoned};
-use crate::trace::{Aim, BLOCKED, Hits, Rays8, nearest, occlusion, surface};
+use crate::trace::{Aim, BLOCKED, Crossing, Hits, Rays8, nearest, occlusion, surface};
 use std::sync::Arc;
 
 const HIGH: &Quality = &Quality::PRESETS[Quality::DEFAULT].1;
@@ -127,7 +127,7 @@ fn brute_force(scene: &Scene, rays: &Rays8) -> Hits {
     for instance in scene.meshes.instances() {
         let aim = Aim::new(&instance.local(rays));
         for triangle in instance.mesh().triangles() {
-            let crossing = aim.cross(&triangle.map(V3::splat));
+            let crossing = aim.cross(&triangle.map(V3::splat)).unwrap_or(Crossing::NONE);
             let closer = crossing.hit & crossing.t.simd_gt(F::ZERO) & crossing.t.simd_lt(best.t);
             best.t = closer.select(crossing.t, best.t);
             best.id = closer.select(splat(id), best.id);

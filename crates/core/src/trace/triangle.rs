@@ -10,7 +10,7 @@
 //! All of it acts lane by lane: eight rays against one triangle, or one ray against eight.
 
 use super::{Rays8, Span};
-use crate::math::lanes::{Bound, F, V3, difference_of_products};
+use crate::math::lanes::{Bound, F, ONE, V3, ZERO, difference_of_products};
 use crate::scene::Triangle;
 
 /// Eight rays, turned and sheared.
@@ -24,6 +24,7 @@ pub struct Aim {
 }
 
 /// Where rays cross triangles.
+#[derive(Clone, Copy)]
 pub struct Crossing {
     /// Distance along the ray.
     pub t: F,
@@ -33,6 +34,11 @@ pub struct Crossing {
     pub weights: [F; 3],
     /// Twice the sheared triangle's area.
     pub sum: F,
+}
+
+impl Crossing {
+    /// Nowhere.
+    pub const NONE: Crossing = Crossing { t: ZERO, hit: ZERO, weights: [ONE, ZERO, ZERO], sum: ONE };
 }
 
 impl Aim {
@@ -59,9 +65,9 @@ impl Aim {
         V3::new(pick(v.x, v.z, v.y), pick(v.y, v.x, v.z), pick(v.z, v.y, v.x))
     }
 
-    /// Where the rays cross triangles with these corners.
+    /// Where the rays cross triangles with these corners; nothing if it is plain that none does.
     #[inline(never)]
-    pub fn cross(&self, corners: &[V3; 3]) -> Crossing {
+    pub fn cross(&self, corners: &[V3; 3]) -> Option<Crossing> {
         let zero = F::ZERO;
         let [a, b, c] = corners.map(|p| {
             let p = self.turn(p - self.origin);
@@ -72,7 +78,7 @@ impl Aim {
         let (u, v, w) = (about(b, c), about(c, a), about(a, b));
         let outside = u.at_most(v).at_most(w).simd_lt(zero) & u.at_least(v).at_least(w).simd_gt(zero);
         if outside.all() {
-            return Crossing { t: zero, hit: zero, weights: [F::ONE, zero, zero], sum: F::ONE };
+            return None;
         }
         let edge = |p: V3, q: V3| difference_of_products(q.x, p.y, q.y, p.x);
         let (u, v, w) = (edge(b, c), edge(c, a), edge(a, b));
@@ -80,12 +86,12 @@ impl Aim {
             | (u.simd_le(zero) & v.simd_le(zero) & w.simd_le(zero));
         let sum = u + v + w;
         let t = (u * a.z + v * b.z + w * c.z) / (sum * self.along);
-        Crossing { t, hit: inside & sum.simd_ne(zero), weights: [u, v, w], sum }
+        Some(Crossing { t, hit: inside & sum.simd_ne(zero), weights: [u, v, w], sum })
     }
 }
 
 /// Where `rays` cross the triangle.
 pub fn triangle(rays: &Rays8, s: &Triangle) -> Span {
-    let crossing = Aim::new(rays).cross(&s.corners.map(V3::splat));
+    let crossing = Aim::new(rays).cross(&s.corners.map(V3::splat)).unwrap_or(Crossing::NONE);
     Span::single(crossing.t, crossing.hit)
 }
