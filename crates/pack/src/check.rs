@@ -7,8 +7,14 @@ use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
 /// What both are asked; none of these opens a window.
-const QUESTIONS: [&[&str]; 4] =
-    [&["--version"], &["--help"], &["--frame", "0", "--size", "32x18", "-o", "-"], &["--no-such-argument"]];
+const QUESTIONS: [&[&str]; 6] = [
+    &["--version"],
+    &["--help"],
+    &["--no-such-argument"],
+    &["--frame", "0", "--size", "32x18", "-o", "-"],
+    &["--frame", "4000", "--size", "64x36", "--quality", "ultra", "-o", "-"],
+    &["--frame", "7400", "--size", "320x180", "-o", "-"],
+];
 
 /// The first difference between the two programs, if there is one.
 pub fn compare(packed: &Path, safe: &Path) -> Result<Option<String>, Error> {

@@ -12,8 +12,8 @@ use crate::trace::Surface;
 /// Schlick's approximation f0 + (f90 - f0) w, w = (1 - c)^5, c clamped to 0..1; `f90` is 1 for a smooth surface.
 /// As f0 (1 - w) + f90 w it is rounded less often.
 ///
-/// The fifth power would hold five times what rounding takes from m = 1 - c; that is e = (1 - m) - c
-/// exactly (Dekker 1971), and m^4 (m + 5 e) makes it good.
+/// The fifth power would hold five times what rounding takes from m = 1 - c. What is lost is (1 - m) - c
+/// exactly (Dekker 1971), and m^4 (m + 5 lost) makes it good.
 #[inline(always)]
 pub fn schlick(f0: V3, f90: F, cos: F) -> V3 {
     let cos = cos.at_least(F::ZERO).at_most(F::ONE);
