@@ -7,7 +7,7 @@
 
 use super::args::Options;
 use super::clock::{Clock, until_next};
-use super::fit;
+use super::fit::{self, Rect};
 use super::live::Live;
 use super::pace::Pace;
 use luc::show;
@@ -78,6 +78,11 @@ impl Stage {
         };
         stage.set_room(room);
         stage
+    }
+
+    /// Where in a window the picture stands: in the shape that was asked for, however few pixels it has.
+    pub fn place(&self, window: (usize, usize)) -> Rect {
+        fit::rect(self.size, window)
     }
 
     /// Tells the size of the window from now on.
@@ -163,7 +168,7 @@ impl Stage {
         picture: &mut Picture,
     ) {
         let room = self.room.load(Relaxed);
-        let fitted = fit::rect(self.size, ((room >> 16) as usize, (room & 0xffff) as usize));
+        let fitted = self.place(((room >> 16) as usize, (room & 0xffff) as usize));
         let (width, height) = self.size;
         let side = |full: usize| (full * twelfths / 12).max(1);
         picture.size = (side(width.min(fitted.width)), side(height.min(fitted.height)));

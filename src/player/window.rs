@@ -71,9 +71,7 @@ pub fn play(options: &Options) -> Result<(), Text> {
             loader::draw(&mut canvas, size, done, total);
             &canvas
         } else {
-            // A smaller picture than was asked for keeps its shape only about.
-            let rect = fit::rect((options.size.0 as usize, options.size.1 as usize), size);
-            fit::fit(&picture.pixels, picture.size, &rect, &mut canvas, size);
+            fit::fit(&picture.pixels, picture.size, &stage.place(size), &mut canvas, size);
             &canvas
         };
         if window.update_with_buffer(pixels, size.0, size.1).is_err() {

@@ -18,7 +18,7 @@ pub const fn short(x: f32) -> f32 {
     f32::from_bits((x.to_bits() + 0x2000) & !0x3fff)
 }
 
-/// A vector or colour of numbers in a table, [`short`]. What moves is a `Vec3::new`.
+/// A vector or colour of numbers in a table, [`short`]. What moves or is worked out is a `Vec3::new`.
 pub const fn v(x: f32, y: f32, z: f32) -> Vec3 {
     Vec3::new(short(x), short(y), short(z))
 }

@@ -39,9 +39,10 @@ pub fn beams(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize), tile:
     for block in 0..(TILE / BLOCK) * (TILE / BLOCK) {
         let (x, y) = (block % (TILE / BLOCK) * BLOCK, block / (TILE / BLOCK) * BLOCK);
         let (left, top) = ((corner.0 + x) as f32, (corner.1 + y) as f32);
+        let here = square((corner.0 + x, corner.1 + y), BLOCK);
         met.truncate(of_tile);
         for k in 0..of_tile {
-            if meets(met[k], square((corner.0 + x, corner.1 + y), BLOCK)) {
+            if meets(met[k], here) {
                 met.push(met[k]);
             }
         }
