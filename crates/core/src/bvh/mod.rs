@@ -60,7 +60,7 @@ impl Bounds {
     }
 
     /// Half the surface area.
-    fn area(self) -> f32 {
+    pub fn area(self) -> f32 {
         let d = self.hi - self.lo;
         d.x * (d.y + d.z) + d.y * d.z
     }

@@ -1,12 +1,13 @@
 //! The nearest facet of eight rays, and whether any facet lies on them.
 //!
-//! Packets whose rays run close together walk the trees as one bundle, and each triangle is tested
-//! against all eight; in others each ray walks alone, and the triangles of a leaf are tested at
-//! once. Both do the same arithmetic per ray and triangle, so the result is the same, and the same
-//! as that of testing everything: the nearest crossing, of equal ones that of the lower id.
+//! Packets whose rays run close together walk the tree of instances as one bundle, and so the trees of
+//! meshes whose triangles are not small beside it: there each triangle is tested against all eight. Else
+//! each ray walks alone, and the triangles of a leaf are tested at once. Both do the same arithmetic per
+//! ray and triangle, so the result is the same, and the same as that of testing everything: the nearest
+//! crossing, of equal ones that of the lower id.
 
-use super::{Assembly, gather};
-use crate::bvh::Stack;
+use super::{Assembly, Mesh, gather};
+use crate::bvh::{Bounds, Stack};
 use crate::counters::{Counter, Counters};
 use crate::math::lanes::{Bound, F, LANES, V3, greatest, least, splat};
 use crate::scene::Scene;
@@ -18,8 +19,16 @@ const SPREAD: f32 = 0.25;
 /// Rays that start further from each other than this part of their greatest coordinate, too.
 const APART: f32 = 0.1;
 
+/// Rays that are further apart in a mesh than this many sides of its triangles, too.
+const COARSE: f32 = 1.5;
+
 /// Greatest coordinate that rays may have.
 const FAR: f32 = 1e18;
+
+/// The lowest lane of a mask.
+fn lane_of(lanes: u32) -> usize {
+    lanes.trailing_zeros() as usize & 7
+}
 
 /// Greatest difference of a coordinate between lanes.
 #[inline(never)]
@@ -38,6 +47,16 @@ fn keep(aim: &Aim, corners: &[V3; 3], id: F, any: bool, best: &mut Hits) {
     let t = if any { splat(-1.0) } else { crossing.t };
     best.t = closer.select(t, best.t);
     best.id = closer.select(id, best.id);
+}
+
+impl Mesh {
+    /// Whether rays in its space, as far apart as about its middle, mostly meet the same triangles.
+    fn is_coarse_for(&self, rays: &Rays8) -> bool {
+        let Bounds { lo, hi } = self.tree.bounds;
+        let away = (V3::splat((lo + hi) * 0.5) - rays.origin).max_abs() / rays.direction.max_abs();
+        let apart = spread(rays.origin) + spread(rays.direction) * away;
+        apart.simd_lt(splat(COARSE * self.grain)).all()
+    }
 }
 
 impl Assembly {
@@ -61,80 +80,93 @@ impl Assembly {
         if todo == 0 || self.is_empty() {
             return;
         }
-        // Lanes that aren't asked about run with the first that is.
-        let first = todo.trailing_zeros() as usize & 7;
-        let one = |v: V3, lane: usize| V3::splat(v.lane(lane));
+        // Lanes that aren't asked about run with the first that is, and find nothing.
+        let first = rays.alone(todo);
         let bundle = Rays8 {
-            origin: V3::select(asked, rays.origin, one(rays.origin, first)),
-            direction: V3::select(asked, rays.direction, one(rays.direction, first)),
+            origin: V3::select(asked, rays.origin, first.origin),
+            direction: V3::select(asked, rays.direction, first.direction),
         };
+        let mut found = Hits { t: asked.select(best.t, splat(-1.0)), id: best.id };
         let close = spread(bundle.direction).simd_lt(greatest(bundle.direction.max_abs()) * splat(SPREAD))
             & spread(bundle.origin).simd_lt(greatest(bundle.origin.max_abs()) * splat(APART));
-        let single = !close.all();
+        let stack = &mut Stack::new();
         while todo != 0 {
-            let first = todo.trailing_zeros() as usize & 7;
-            let of_first = |v: F| splat(v.as_array()[first]);
-            let mut found = Hits { t: of_first(best.t), id: of_first(best.id) };
-            if single {
-                let ray = Rays8 { origin: one(rays.origin, first), direction: one(rays.direction, first) };
-                self.walk(scene, &ray, (true, any), &mut found, counters);
-                todo &= todo - 1;
-            } else {
-                found = Hits { t: asked.select(best.t, found.t), id: asked.select(best.id, found.id) };
-                self.walk(scene, &bundle, (false, any), &mut found, counters);
-                todo = 0;
-            }
-            for k in 0..LANES {
-                let lane = if single { first } else { k };
-                let (t, id) = (found.t.as_array()[k], found.id.as_array()[k]);
-                let (t_best, id_best) = (&mut best.t.as_mut_array()[lane], &mut best.id.as_mut_array()[lane]);
-                let counts = single || asked.to_bitmask() >> k & 1 == 1;
-                if counts && (t < *t_best || (t == *t_best && id < *id_best)) {
-                    (*t_best, *id_best) = (t, id);
-                }
-            }
+            let lowest = todo & todo.wrapping_neg();
+            let (rays, lanes) = if close.all() { (bundle, todo) } else { (rays.alone(todo), lowest) };
+            self.walk(scene, (&rays, lanes), any, &mut found, stack, counters);
+            todo &= !lanes;
         }
+        best.t = asked.select(found.t, best.t);
+        best.id = asked.select(found.id, best.id);
     }
 
+    /// Does so for `rays` as one bundle, in lanes `lanes`; if that is one lane, for its ray in all of them.
     fn walk(
         &self,
         scene: &Scene,
-        rays: &Rays8,
-        (single, any): (bool, bool),
+        (rays, lanes): (&Rays8, u32),
+        any: bool,
         best: &mut Hits,
+        stack: &mut Stack,
         counters: &mut Counters,
     ) {
         let base = 4.0 * scene.shape_count() as f32;
+        let single = lanes & (lanes - 1) == 0;
         // Beyond which distance no hit counts any more.
         let limit = |best: &Hits| {
-            let t = if single { least(best.t) } else { greatest(best.t) };
-            t.as_array()[0]
+            if single { best.t.as_array()[lane_of(lanes)] } else { greatest(best.t).as_array()[0] }
         };
-        self.tree.walk(rays, limit(best), &mut Stack::new(), counters, &mut |items, stack, counters| {
+        self.tree.walk(rays, limit(best), stack, counters, &mut |items, stack, counters| {
             let instance = &self.instances[items[0] as usize];
             if any && scene.materials[instance.material].is_transparent() {
                 return limit(best);
             }
             let mesh = instance.mesh();
             let local = instance.local(rays);
-            let aim = Aim::new(&local);
             let [first, _] = instance.ids(base);
-            mesh.tree.walk(&local, limit(best), stack, counters, &mut |items, _, counters| {
-                counters.add(Counter::FacetTests, items.len() * if single { 1 } else { LANES });
-                if single {
-                    // All of the leaf at once; the last lanes repeat its last.
-                    let last = items.len() - 1;
-                    let index = std::array::from_fn(|lane| items[lane.min(last)] as usize);
-                    let id = splat(first) + F::new(index.map(|i| 4.0 * i as f32));
-                    keep(&aim, &gather(&mesh.triangles, index), id, any, best);
-                    return limit(best);
+            let mut rest = lanes;
+            let together = !single && mesh.is_coarse_for(&local);
+            while rest != 0 {
+                let lane = lane_of(rest);
+                let one = |v: F| splat(v.as_array()[lane]);
+                let (ray, mut found) = if together {
+                    (local, *best)
+                } else {
+                    (local.alone(rest), Hits { t: one(best.t), id: one(best.id) })
+                };
+                let aim = Aim::new(&ray);
+                let reach =
+                    |found: &Hits| if together { greatest(found.t) } else { least(found.t) }.as_array()[0];
+                mesh.tree.walk(&ray, reach(&found), stack, counters, &mut |items, _, counters| {
+                    counters.add(Counter::FacetTests, items.len() * if together { LANES } else { 1 });
+                    if together {
+                        for &item in items {
+                            let corners = mesh.triangles[item as usize].map(V3::splat);
+                            keep(&aim, &corners, splat(first + 4.0 * item as f32), any, &mut found);
+                        }
+                    } else {
+                        // All of the leaf at once; the last lanes repeat its last.
+                        let last = items.len() - 1;
+                        let index = std::array::from_fn(|lane| items[lane.min(last)] as usize);
+                        let id = splat(first) + F::new(index.map(|i| 4.0 * i as f32));
+                        keep(&aim, &gather(&mesh.triangles, index), id, any, &mut found);
+                    }
+                    reach(&found)
+                });
+                if together {
+                    *best = found;
+                    break;
                 }
-                for &item in items {
-                    let corners = mesh.triangles[item as usize].map(V3::splat);
-                    keep(&aim, &corners, splat(first + 4.0 * item as f32), any, best);
+                for k in 0..LANES {
+                    let (t, id) = (found.t.as_array()[k], found.id.as_array()[k]);
+                    let (t_best, id_best) =
+                        (&mut best.t.as_mut_array()[lane], &mut best.id.as_mut_array()[lane]);
+                    if t < *t_best || (t == *t_best && id < *id_best) {
+                        (*t_best, *id_best) = (t, id);
+                    }
                 }
-                limit(best)
-            });
+                rest &= rest - 1;
+            }
             limit(best)
         });
     }

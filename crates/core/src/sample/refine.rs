@@ -2,7 +2,8 @@
 //!
 //! A cell is interpolated if its corners and its centre have equal signatures, nothing else may
 //! appear in it, and the bilinear value at the centre is within tolerance in display units; else
-//! it is split in four, down to the pixel. Samples lie on pixels, so children share them.
+//! it is split in four, down to the pixel. Samples lie on pixels, so children share them. Among small
+//! facets no cell stays whole: a small one whose samples saw three surfaces is split into pixels at once.
 //! Whitted 1980's adaptive supersampling turned round; the centre sample is what makes it exact.
 //!
 //! *Nothing else may appear*: a shape whose projected bound meets the cell and that isn't behind
@@ -24,6 +25,9 @@ use crate::render::Stage;
 use crate::shade::MAX_LAMPS;
 use crate::trace::{BLOCKED, Shape};
 use glam::Vec2;
+
+/// Side of the largest cell that is split into pixels at once, px.
+const CROWD: usize = 8;
 
 /// A square between samples; `x`, `y` from the tile's corner, px.
 #[derive(Clone, Copy)]
@@ -115,9 +119,10 @@ fn refine_side(
 
     let mut cells = std::mem::take(&mut scratch.cells);
     cells.clear();
-    let along = |end: usize| (0..TILE).map(|i| i * cell).take_while(move |x| *x < end);
-    for y in along(height) {
-        for x in along(width) {
+    for index in 0..TILE * TILE / (cell * cell) {
+        let (x, y) = in_square(index);
+        let (x, y) = (x * cell, y * cell);
+        if x < width && y < height {
             let cell = Cell { x, y, size: cell };
             if cell.lies(stage, corner, side) {
                 tile.measured[0] += measures as u32 as f32;
@@ -164,11 +169,13 @@ fn refine_side(
             {
                 fill(stage, corner, cell, &known, tile, &mut scratch.counters);
             } else {
-                let half = Cell { size: cell.size / 2, ..cell };
-                for (x, y) in (0..4).map(|i| half.point(i)) {
-                    let half = Cell { x, y, ..half };
-                    if x < width && y < height && half.lies(stage, corner, side) {
-                        cells.push(half);
+                let half = cell.size / 2;
+                let size = if known.is_crowded() { half.min(stage.quality.smallest as usize) } else { half };
+                let parts = cell.size / size;
+                for (x, y) in (0..parts * parts).map(in_square) {
+                    let part = Cell { x: cell.x + x * size, y: cell.y + y * size, size };
+                    if part.x < width && part.y < height && part.lies(stage, corner, side) {
+                        cells.push(part);
                     }
                 }
             }
@@ -223,7 +230,20 @@ fn shadow_casters(stage: &Stage, samples: &Samples) -> [u64; MAX_LAMPS] {
     masks
 }
 
+/// Place `index` of a square along Morton's curve, on which neighbours are near.
+fn in_square(index: usize) -> (usize, usize) {
+    let bits = |k: usize| (0..6).map(|bit| (index >> (2 * bit + k) & 1) << bit).sum();
+    (bits(0), bits(1))
+}
+
 impl Known<'_> {
+    /// Whether the samples of a small cell saw three surfaces or more.
+    fn is_crowded(&self) -> bool {
+        let surfaces = self.samples.map(Sample::surface);
+        let is_new = |&i: &usize| !surfaces[..i].contains(&surfaces[i]);
+        self.size <= CROWD && (0..surfaces.len()).filter(is_new).count() > 2
+    }
+
     /// Whether all samples agree with the first in a property.
     fn all(&self, like: impl Fn(Sample, Sample) -> bool) -> bool {
         self.samples[1..].iter().all(|&s| like(s, self.samples[0]))

@@ -92,6 +92,13 @@ impl Span {
 }
 
 impl Rays8 {
+    /// The ray of the lowest lane of a mask, in all lanes.
+    #[inline(never)]
+    pub fn alone(&self, lanes: u32) -> Rays8 {
+        let one = |v: V3| V3::splat(v.lane(lanes.trailing_zeros() as usize));
+        Rays8 { origin: one(self.origin), direction: one(self.direction) }
+    }
+
     /// Distances at which the rays enter and leave a box, at least 0 and at most `end`; a miss has
     /// them in the wrong order.
     ///
