@@ -27,8 +27,6 @@ pub struct Mesh {
     /// Normals at the corners, for meshes that stand for something curved; else empty.
     normals: Vec<[Vec3; 3]>,
     tree: Tree,
-    /// Typical side of a triangle.
-    grain: f32,
 }
 
 impl Mesh {
@@ -42,13 +40,7 @@ impl Mesh {
     #[inline(never)]
     pub fn smooth(triangles: Vec<[Vec3; 3]>, normals: Vec<[Vec3; 3]>) -> Mesh {
         let boxes: Vec<Bounds> = triangles.iter().map(|t| Bounds::around(t)).collect();
-        let area: f32 = boxes.iter().map(|b| b.area()).sum();
-        Mesh {
-            grain: (area / boxes.len() as f32).sqrt(),
-            tree: Tree::build(&boxes, LEAF),
-            triangles,
-            normals,
-        }
+        Mesh { tree: Tree::build(&boxes, LEAF), triangles, normals }
     }
 
     /// The triangles, in the order of their indices.

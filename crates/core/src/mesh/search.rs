@@ -7,9 +7,9 @@
 //! crossing, of equal ones that of the lower id.
 
 use super::{Assembly, Mesh, gather};
-use crate::bvh::{Bounds, Stack};
+use crate::bvh::Stack;
 use crate::counters::{Counter, Counters};
-use crate::math::lanes::{Bound, F, LANES, V3, greatest, least, splat};
+use crate::math::lanes::{Bound, F, INFINITY, LANES, V3, greatest, least, splat};
 use crate::scene::Scene;
 use crate::trace::{Aim, Hits, Rays8};
 
@@ -19,8 +19,8 @@ const SPREAD: f32 = 0.25;
 /// Rays that start further from each other than this part of their greatest coordinate, too.
 const APART: f32 = 0.1;
 
-/// Rays that are further apart in a mesh than this many sides of its triangles, too.
-const COARSE: f32 = 1.5;
+/// Rays too that are so far apart in a mesh that their square is more than so many of its triangles.
+const COARSE: f32 = 5.0;
 
 /// Greatest coordinate that rays may have.
 const FAR: f32 = 1e18;
@@ -51,11 +51,14 @@ fn keep(aim: &Aim, corners: &[V3; 3], id: F, any: bool, best: &mut Hits) {
 
 impl Mesh {
     /// Whether rays in its space, as far apart as about its middle, mostly meet the same triangles.
+    #[inline(never)]
+    #[cfg_attr(luc_size, optimize(size))]
     fn is_coarse_for(&self, rays: &Rays8) -> bool {
-        let Bounds { lo, hi } = self.tree.bounds;
-        let away = (V3::splat((lo + hi) * 0.5) - rays.origin).max_abs() / rays.direction.max_abs();
+        let bounds = self.tree.bounds;
+        let away =
+            (V3::splat((bounds.lo + bounds.hi) * 0.5) - rays.origin).max_abs() / rays.direction.max_abs();
         let apart = spread(rays.origin) + spread(rays.direction) * away;
-        apart.simd_lt(splat(COARSE * self.grain)).all()
+        (apart * apart).simd_lt(splat(COARSE * bounds.area() / self.triangles.len() as f32)).all()
     }
 }
 
@@ -157,14 +160,10 @@ impl Assembly {
                     *best = found;
                     break;
                 }
-                for k in 0..LANES {
-                    let (t, id) = (found.t.as_array()[k], found.id.as_array()[k]);
-                    let (t_best, id_best) =
-                        (&mut best.t.as_mut_array()[lane], &mut best.id.as_mut_array()[lane]);
-                    if t < *t_best || (t == *t_best && id < *id_best) {
-                        (*t_best, *id_best) = (t, id);
-                    }
-                }
+                let nearest = least(found.t);
+                best.t.as_mut_array()[lane] = nearest.as_array()[0];
+                let id = found.t.simd_eq(nearest).select(found.id, INFINITY);
+                best.id.as_mut_array()[lane] = least(id).as_array()[0];
                 rest &= rest - 1;
             }
             limit(best)

@@ -65,13 +65,32 @@ impl Cell {
         }
     }
 
-    /// Whether it has pixels on this side of the scene's line.
+    /// Whether it has pixels of the picture on this side of the scene's line.
     fn lies(self, stage: &Stage, corner: (usize, usize), side: usize) -> bool {
         let last = self.size - 1;
         let (x, y) = (corner.0 + self.x, corner.1 + self.y);
-        stage.sides().contains(&side)
+        x < stage.width as usize
+            && y < stage.height as usize
+            && stage.sides().contains(&side)
             && (0..if last == 0 { 1 } else { 4 })
                 .any(|i| stage.side(x + (i & 1) * last, y + (i >> 1) * last) == side)
+    }
+
+    /// Appends its parts of this size that lie there, along Morton's curve, on which neighbours are near.
+    #[inline(never)]
+    #[cfg_attr(luc_size, optimize(size))]
+    fn split(self, size: usize, stage: &Stage, corner: (usize, usize), side: usize, cells: &mut Vec<Cell>) {
+        let parts = self.size / size;
+        for index in 0..parts * parts {
+            let mut part = Cell { size, ..self };
+            for bit in 0..TILE.trailing_zeros() {
+                part.x += (index >> (2 * bit) & 1) * (size << bit);
+                part.y += (index >> (2 * bit + 1) & 1) * (size << bit);
+            }
+            if part.lies(stage, corner, side) {
+                cells.push(part);
+            }
+        }
     }
 }
 
@@ -86,12 +105,10 @@ struct Surroundings {
 /// Samples the tile whose upper left pixel is `corner`, and fills its pixels.
 #[cfg_attr(luc_size, optimize(size))]
 pub fn refine(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize), tile: &mut Tile) {
-    let width = TILE.min(stage.width as usize - corner.0);
-    let height = TILE.min(stage.height as usize - corner.1);
     let mut around = Surroundings { shapes: stage.candidates(corner, TILE), shadows: [u64::MAX; MAX_LAMPS] };
     tile.edges = [[false; GRID]; GRID];
     for pass in stage.sides().start..2 + (features::SPLIT && stage.scene.split.is_some()) as usize {
-        refine_side(stage, scratch, corner, (width, height), pass, &mut around, tile);
+        refine_side(stage, scratch, corner, pass, &mut around, tile);
     }
 }
 
@@ -101,7 +118,6 @@ fn refine_side(
     stage: &Stage,
     scratch: &mut Scratch,
     corner: (usize, usize),
-    (width, height): (usize, usize),
     pass: usize,
     around: &mut Surroundings,
     tile: &mut Tile,
@@ -119,18 +135,10 @@ fn refine_side(
 
     let mut cells = std::mem::take(&mut scratch.cells);
     cells.clear();
-    for index in 0..TILE * TILE / (cell * cell) {
-        let (x, y) = in_square(index);
-        let (x, y) = (x * cell, y * cell);
-        if x < width && y < height {
-            let cell = Cell { x, y, size: cell };
-            if cell.lies(stage, corner, side) {
-                tile.measured[0] += measures as u32 as f32;
-                if !measures || tile.record[y * TILE + x].kind() != Kind::Traced {
-                    cells.push(cell);
-                }
-            }
-        }
+    Cell { x: 0, y: 0, size: TILE }.split(cell, stage, corner, side, &mut cells);
+    if measures {
+        tile.measured[0] += cells.len() as f32;
+        cells.retain(|cell| tile.record[cell.y * TILE + cell.x].kind() != Kind::Traced);
     }
     let mut done = 0;
     // Level by level: the cells of the next one are appended.
@@ -171,13 +179,7 @@ fn refine_side(
             } else {
                 let half = cell.size / 2;
                 let size = if known.is_crowded() { half.min(stage.quality.smallest as usize) } else { half };
-                let parts = cell.size / size;
-                for (x, y) in (0..parts * parts).map(in_square) {
-                    let part = Cell { x: cell.x + x * size, y: cell.y + y * size, size };
-                    if part.x < width && part.y < height && part.lies(stage, corner, side) {
-                        cells.push(part);
-                    }
-                }
+                cell.split(size, stage, corner, side, &mut cells);
             }
         }
     }
@@ -230,18 +232,11 @@ fn shadow_casters(stage: &Stage, samples: &Samples) -> [u64; MAX_LAMPS] {
     masks
 }
 
-/// Place `index` of a square along Morton's curve, on which neighbours are near.
-fn in_square(index: usize) -> (usize, usize) {
-    let bits = |k: usize| (0..6).map(|bit| (index >> (2 * bit + k) & 1) << bit).sum();
-    (bits(0), bits(1))
-}
-
 impl Known<'_> {
     /// Whether the samples of a small cell saw three surfaces or more.
     fn is_crowded(&self) -> bool {
-        let surfaces = self.samples.map(Sample::surface);
-        let is_new = |&i: &usize| !surfaces[..i].contains(&surfaces[i]);
-        self.size <= CROWD && (0..surfaces.len()).filter(is_new).count() > 2
+        let [first, .., last] = self.samples.map(Sample::surface);
+        self.size <= CROWD && first != last && self.any(|s| s.surface() != first && s.surface() != last)
     }
 
     /// Whether all samples agree with the first in a property.
