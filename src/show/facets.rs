@@ -8,7 +8,7 @@ use super::score;
 use super::still::{Lamp, Still};
 use luc_core::math::hash::{hash2, unit};
 use luc_core::math::scalar::sin_cos;
-use luc_core::math::{Mat3, Vec3};
+use luc_core::math::{Mat3, Vec3, number};
 use luc_core::mesh::{Assembly, Instance, Mesh, lathe};
 use luc_core::scene::*;
 use luc_core::synth::track::{Strikes, pulse, strikes};
@@ -75,7 +75,7 @@ pub fn shaft(out: &mut Triangles, _: &mut Dice) {
 /// The crystals that lean at its foot.
 pub fn foot(out: &mut Triangles, dice: &mut Dice) {
     for k in 0..7 {
-        let (sin, cos) = sin_cos(k as f32 * 0.9 + dice.roll(-0.3, 0.3));
+        let (sin, cos) = sin_cos(number(k) * 0.9 + dice.roll(-0.3, 0.3));
         let away = Vec3::new(cos, 0.0, sin);
         let height = dice.roll(0.9, 2.2) * dice.roll(0.9, 2.2);
         let axis = (Vec3::Y + away * dice.roll(0.02, 0.3)) * height;
@@ -104,7 +104,7 @@ pub const RIBS: [(f32, f32); 3] = [(0.3, 0.0), (0.16, 0.5), (0.16, -0.5)];
 pub fn rib(out: &mut Triangles, dice: &mut Dice, (radius, slant): (f32, f32), pieces: usize) {
     for k in 0..pieces {
         let at = |k: usize| {
-            let share = k as f32 / 7.0;
+            let share = number(k) / 7.0;
             arch(share, 0.0) + Vec3::Z * (slant * share * BAY)
         };
         lathe(out, &[(at(k), radius), (at(k + 1), radius * 0.97)], 6, dice.roll(-0.03, 0.03));
@@ -125,7 +125,7 @@ fn vault(out: &mut Triangles, dice: &mut Dice) {
     let points: [[Vec3; 9]; 28] = std::array::from_fn(|j| {
         std::array::from_fn(|i| {
             let shaken = Vec3::new(dice.roll(-0.13, 0.13), dice.roll(-0.13, 0.13), dice.roll(-0.13, 0.13));
-            arch(j as f32 / 27.0, 0.45) + Vec3::Z * ((i as f32 / 8.0 - 0.5) * BAY) + shaken
+            arch(number(j) / 27.0, 0.45) + Vec3::Z * ((number(i) / 8.0 - 0.5) * BAY) + shaken
         })
     });
     for (j, i) in (0..27 * 8).map(|k| (k / 8, k % 8)) {
@@ -141,7 +141,7 @@ fn vault(out: &mut Triangles, dice: &mut Dice) {
 /// Twelve spokes and a rim, about the origin.
 fn rose(out: &mut Triangles, _: &mut Dice) {
     let around = |k: usize, radius: f32| {
-        let (sin, cos) = sin_cos(k as f32 * degrees(15.0));
+        let (sin, cos) = sin_cos(number(k) * degrees(15.0));
         Vec3::new(sin, cos, 0.0) * radius
     };
     for k in 0..24 {
@@ -197,14 +197,14 @@ pub fn cathedral(t: f32, bays: usize, rose: bool) -> Assembly {
         let bay = k / 2;
         let side = if k % 2 == 0 { 1.0 } else { -1.0 };
         let way = if (bay * 3 + k) % 4 < 2 { 1.0 } else { -1.0 };
-        let began = bay as f32 - 1.5;
+        let began = number(bay) - 1.5;
         // No two clusters of crystals stand the same way.
-        let (sin, cos) = sin_cos(k as f32 * 1.7);
+        let (sin, cos) = sin_cos(number(k) * 1.7);
         let turned = Mat3::from_cols(Vec3::new(cos, 0.0, sin), Vec3::Y, Vec3::new(-sin, 0.0, cos));
         for (i, (mesh, (_, material, delay, from))) in meshes.iter().zip(RULES).take(5).enumerate() {
             let size = growth(t - began - delay);
             if size > 0.02 && (rose || i > 0) {
-                let origin = v(side * SIDE, from * (1.0 - size), 4.0 - BAY * bay as f32);
+                let origin = v(side * SIDE, from * (1.0 - size), 4.0 - BAY * number(bay));
                 let mirrored = Mat3::from_diagonal((Vec3::new(side, 1.0, way) * size).into());
                 let grown = if i == FOOT { mirrored * turned } else { mirrored };
                 instances.push(Instance::new(mesh, grown, origin, material));
@@ -216,9 +216,9 @@ pub fn cathedral(t: f32, bays: usize, rose: bool) -> Assembly {
 
 /// Light that comes through the torn vault, from when its bay has grown.
 fn shaft_of_light(k: usize, t: f32) -> Beam {
-    let from = v(4.0, 8.2 + 0.25 * k as f32, -5.0 - BAY * k as f32);
+    let from = v(4.0, 8.2 + 0.25 * number(k), -5.0 - BAY * number(k));
     let to = from + v(-0.42, -0.34, 0.84) * (from.y / 0.34);
-    let shine = 0.08 * ((t - 4.0 - k as f32) * 0.5).clamp(0.0, 1.0);
+    let shine = 0.08 * ((t - 4.0 - number(k)) * 0.5).clamp(0.0, 1.0);
     Beam { from, to, width: 0.42, colour: v(1.0, 0.58, 0.22) * shine, fade: 0.05 }
 }
 

@@ -1,7 +1,7 @@
 //! Short forms that the scenes share: motion in seconds, colours, materials.
 
-use luc_core::math::Vec3;
 use luc_core::math::scalar::{sin, sin_cos};
+use luc_core::math::{Vec3, number};
 use luc_core::scene::{Ease, Grade, Key, Material, Texture};
 use std::f32::consts::{PI, TAU};
 
@@ -9,7 +9,7 @@ use super::FPS;
 
 /// Seconds of a local frame.
 pub const fn seconds(frame: u64) -> f32 {
-    frame as f32 / FPS as f32
+    number(frame as usize) / FPS as f32
 }
 
 /// `x` with nine binary places after the first, about the three digits that the tables are written with: what

@@ -9,7 +9,7 @@ use super::paint::{angle, degrees, graded, key, seconds, surface, swing, times, 
 use super::score;
 use super::still::{Lamp, Panel, Still};
 use luc_core::math::scalar::{cos, sin};
-use luc_core::math::{Mat3, Vec3};
+use luc_core::math::{Mat3, Vec3, number};
 use luc_core::mesh::{Assembly, Instance, Mesh};
 use luc_core::scene::*;
 use luc_core::synth::track::{Strikes, pulse, strikes};
@@ -91,7 +91,7 @@ fn hills() -> Mesh {
         // Corners of the cell's upper or lower half, as steps across and along.
         let corners = [[(0, 0), (1, 0), (1, 1)], [(0, 0), (1, 1), (0, 1)]][i % 2];
         let at = |(across, along)| {
-            let step = |n: usize| n as i32 as f32 / CELLS as f32;
+            let step = |n: usize| number(n) / CELLS as f32;
             let (u, w) = (step(i / 2 % CELLS + across), step(i / 2 / CELLS + along));
             let z = 16.0 - 96.0 * w * (0.3 + 0.7 * w);
             (z, (u - 0.5) * (40.0 - 1.2 * z) - 4.0)

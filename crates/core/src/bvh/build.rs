@@ -7,6 +7,7 @@
 
 use super::{Bounds, EMPTY, LEAF, LEAF_BIT, Node, Tree};
 use crate::math::lanes::{LANES, ZERO};
+use crate::math::number;
 use crate::parallel;
 
 /// Planes tried along an axis, and one.
@@ -105,7 +106,7 @@ impl Builder<'_> {
             let (mut largest, mut at) = (-1.0, LANES);
             for (i, part) in parts[..count].iter().enumerate() {
                 let items = part.to - part.from;
-                let size = if depth < DEEP { part.bounds.area() } else { items as f32 };
+                let size = if depth < DEEP { part.bounds.area() } else { number(items) };
                 if items > self.leaf && size > largest {
                     (largest, at) = (size, i);
                 }

@@ -1,7 +1,7 @@
 //! The body that crystals are made of.
 
-use crate::math::Vec3;
 use crate::math::scalar::sin_cos;
+use crate::math::{Vec3, number};
 use std::f32::consts::TAU;
 
 /// Appends a body of `sides` flat sides around some points of an axis, with a radius at each; a
@@ -15,7 +15,7 @@ pub fn lathe(out: &mut Vec<[Vec3; 3]>, rings: &[(Vec3, f32)], sides: usize, turn
     let mut around = [Vec3::ZERO; 2];
     // The last side ends where the first began, bit for bit.
     for k in 0..=sides {
-        let (sin, cos) = sin_cos(((k % sides) as f32 / sides as f32 + turn) * TAU);
+        let (sin, cos) = sin_cos((number(k % sides) / number(sides) + turn) * TAU);
         around = [around[1], u * cos + v * sin];
         for ring in rings.windows(2).filter(|_| k > 0) {
             let [p, q, s, r] = [0, 1, 2, 3].map(|i| ring[i / 2].0 + around[i % 2] * ring[i / 2].1);

@@ -4,7 +4,7 @@ use super::{Mesh, gather};
 use crate::bvh::{Bounds, Tree};
 use crate::features;
 use crate::math::lanes::{F, V3, splat};
-use crate::math::{Mat3, Vec3};
+use crate::math::{Mat3, Vec3, number};
 use crate::trace::{Aim, Crossing, Rays8, Span};
 use std::sync::Arc;
 
@@ -92,7 +92,7 @@ impl Instance {
 
     /// Id of its first facet, and of the first one after it, where the assembly's start at `base`.
     pub(crate) fn ids(&self, base: f32) -> [f32; 2] {
-        [self.first, self.first + self.mesh.triangles.len()].map(|facet| base + 4.0 * facet as f32)
+        [self.first, self.first + self.mesh.triangles.len()].map(|facet| base + 4.0 * number(facet))
     }
 
     /// Where rays cross a facet.

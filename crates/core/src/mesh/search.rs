@@ -10,6 +10,7 @@ use super::{Assembly, Mesh, gather};
 use crate::bvh::Stack;
 use crate::counters::{Counter, Counters};
 use crate::math::lanes::{Bound, F, INFINITY, LANES, V3, greatest, least, splat};
+use crate::math::number;
 use crate::scene::Scene;
 use crate::trace::{Aim, Hits, Rays8};
 
@@ -58,7 +59,7 @@ impl Mesh {
         let away =
             (V3::splat((bounds.lo + bounds.hi) * 0.5) - rays.origin).max_abs() / rays.direction.max_abs();
         let apart = spread(rays.origin) + spread(rays.direction) * away;
-        (apart * apart).simd_lt(splat(COARSE * bounds.area() / self.triangles.len() as f32)).all()
+        (apart * apart).simd_lt(splat(COARSE * bounds.area() / number(self.triangles.len()))).all()
     }
 }
 
@@ -113,7 +114,7 @@ impl Assembly {
         stack: &mut Stack,
         counters: &mut Counters,
     ) {
-        let base = 4.0 * scene.shape_count() as f32;
+        let base = 4.0 * number(scene.shape_count());
         let single = lanes & (lanes - 1) == 0;
         // Beyond which distance no hit counts any more.
         let limit = |best: &Hits| {
@@ -151,7 +152,7 @@ impl Assembly {
                         // All of the leaf at once; the last lanes repeat its last.
                         let last = items.len() - 1;
                         let index = std::array::from_fn(|lane| items[lane.min(last)] as usize);
-                        let id = splat(first) + F::new(index.map(|i| 4.0 * i as f32));
+                        let id = splat(first) + F::new(index.map(|i| 4.0 * number(i)));
                         keep(&aim, &gather(&mesh.triangles, index), id, any, &mut found);
                     }
                     reach(&found)

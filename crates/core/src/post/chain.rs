@@ -10,6 +10,7 @@ use crate::counters::Counters;
 use crate::features;
 use crate::math::hash::hash2;
 use crate::math::lanes::{Bound, F, RAMP, V3, splat};
+use crate::math::number;
 use crate::parallel;
 use crate::sample::Tile;
 use crate::scene::{Effect, Kind};
@@ -58,10 +59,10 @@ impl Chain {
                 });
                 next.reset(width, height, 1);
                 let around = Around { picture, tiles, glow, seed: hash2(n as u32, 1) };
-                let (across, up) = (2.0 / width as f32, 2.0 / height as f32);
+                let (across, up) = (2.0 / number(width), 2.0 / number(height));
                 write(next, &|x, y| {
-                    let px = (splat(x as f32 + 0.5) + RAMP) * splat(across) - F::ONE;
-                    let py = 1.0 - (y as f32 + 0.5) * up;
+                    let px = (splat(number(x) + 0.5) + RAMP) * splat(across) - F::ONE;
+                    let py = 1.0 - (number(y) + 0.5) * up;
                     let place = &effect.place;
                     let far = px * splat(place.normal.x) + splat(py * place.normal.y - place.from);
                     let share = (far * splat(1.0 / place.over)).at_least(F::ZERO).at_most(F::ONE);

@@ -10,9 +10,9 @@ use super::chain::Chain;
 use super::effect::noise;
 use super::picture::{Picture, ROWS};
 use crate::counters::{Counter, Counters};
-use crate::math::Vec3;
 use crate::math::hash::hash2;
 use crate::math::lanes::{Bound, F, RAMP, V3, load, splat, splat_u};
+use crate::math::{Vec3, number};
 use crate::render::Stage;
 use crate::sample::{Kind, TILE, Tile};
 use crate::scene::Stop;
@@ -118,8 +118,8 @@ fn print(stage: &Stage, mut colour: V3, (x, y): (usize, usize), n: u64, out: &mu
     let grade = &stage.scene.grade;
     let (w, h) = (stage.width as f32, stage.height as f32);
     if grade.vignette > 0.0 {
-        let fx = (splat(x as f32 + 0.5) + RAMP) * splat(2.0 / w) - F::ONE;
-        let fy = ((y as f32 + 0.5) * 2.0 - h) / h;
+        let fx = (splat(number(x) + 0.5) + RAMP) * splat(2.0 / w) - F::ONE;
+        let fy = ((number(y) + 0.5) * 2.0 - h) / h;
         let r2 = (fx * fx + splat(fy * fy)) * splat(0.5);
         let fall = r2 * (splat(0.5939) + r2 * (splat(0.6871) - r2 * splat(0.2849)));
         colour = colour * (F::ONE - splat(grade.vignette) * fall);

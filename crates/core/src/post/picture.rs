@@ -1,6 +1,7 @@
 //! Pictures as planes of numbers, with their edges repeated, so that filters need not ask where they are.
 
 use crate::math::lanes::{Bound, F, RAMP, V3, load, pick, splat, splat_u};
+use crate::math::number;
 use crate::parallel;
 
 /// The seven taps of the blur: row six of Pascal's triangle.
@@ -84,11 +85,11 @@ impl Picture {
     /// Values of one colour between the pixels of (fractional) columns and a row, bilinearly.
     #[inline(never)]
     pub fn between(&self, colour: usize, columns: F, row: f32) -> F {
-        let row = row.clamp(0.0, (self.height - 1) as f32);
+        let row = row.clamp(0.0, number(self.height - 1));
         let down = row.floor();
         let clean = |v: f32| if v > 0.0 { v.min(LIMIT) } else { 0.0 };
         F::new(columns.to_array().map(|column| {
-            let column = column.clamp(0.0, (self.width - 1) as f32);
+            let column = column.clamp(0.0, number(self.width - 1));
             let left = column.floor();
             let at = self.at(left as usize, down as usize) + colour * self.stride();
             let pair = |at: usize| {
@@ -148,8 +149,8 @@ impl Picture {
     #[inline(never)]
     pub fn light(&self, x: usize, y: usize, scale: usize) -> V3 {
         // The position among the glow's pixels: exact, as the scale is a power of two.
-        let place = |p: F| ((p + splat(0.5)) * splat(1.0 / scale as f32) - splat(0.5)).at_least(F::ZERO);
-        let (u, v) = (place(splat(x as f32) + RAMP), place(splat(y as f32)));
+        let place = |p: F| ((p + splat(0.5)) * splat(1.0 / number(scale)) - splat(0.5)).at_least(F::ZERO);
+        let (u, v) = (place(splat(number(x)) + RAMP), place(splat(number(y))));
         let (columns, row) = (u.floor(), v.floor());
         let (fx, fy) = (u - columns, v - row);
         let first = columns.as_array()[0];

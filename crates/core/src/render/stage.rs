@@ -2,8 +2,8 @@
 
 use crate::cull::{Dop, FieldNode, Shaft, View, dops, field_nodes, shafts};
 use crate::features;
-use crate::math::Vec3;
 use crate::math::lanes::{F, V3, splat};
+use crate::math::{Vec3, number};
 use crate::post::Display;
 use crate::quality::{Quality, Rung};
 use crate::scene::Scene;
@@ -122,8 +122,8 @@ impl<'a> Stage<'a> {
     pub fn side(&self, x: usize, y: usize) -> usize {
         match &self.scene.split {
             Some(split) if features::SPLIT => {
-                let right = (2 * x + 1) as f32 / self.width as f32 - 1.0;
-                let up = 1.0 - (2 * y + 1) as f32 / self.height as f32;
+                let right = number(2 * x + 1) / self.width as f32 - 1.0;
+                let up = 1.0 - number(2 * y + 1) / self.height as f32;
                 (right >= split.x + split.slant * up) as usize
             }
             _ => 1,
@@ -197,8 +197,8 @@ impl<'a> Stage<'a> {
             return u64::MAX;
         }
         // A little over the last sample, which lies on the next tile's first pixel.
-        let half = side as f32 * 0.5 + 1.0;
-        let middle = self.on_screen(corner.0 as f32 + half - 1.0, corner.1 as f32 + half - 1.0);
+        let half = number(side) * 0.5 + 1.0;
+        let middle = self.on_screen(number(corner.0) + half - 1.0, number(corner.1) + half - 1.0);
         let half = Vec2::splat(half * self.pixel);
         let mut mask = 0;
         for (i, dop) in self.dops.iter().enumerate() {

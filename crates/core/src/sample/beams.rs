@@ -8,6 +8,7 @@ use super::wave::Scratch;
 use crate::counters::Counter;
 use crate::features;
 use crate::math::lanes::{F, RAMP, V3, load, splat};
+use crate::math::number;
 use crate::render::Stage;
 use crate::shade::beam;
 use crate::trace::Rays8;
@@ -26,8 +27,8 @@ pub fn beams(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize), tile:
     let forward = V3::splat(stage.forward());
     // A square's middle on the plane one unit ahead of the eye, and its half sides.
     let square = |corner: (usize, usize), side: usize| {
-        let half = 0.5 * side as f32;
-        let middle = stage.on_screen(corner.0 as f32 + half, corner.1 as f32 + half);
+        let half = 0.5 * number(side);
+        let middle = stage.on_screen(number(corner.0) + half, number(corner.1) + half);
         (middle, Vec2::splat(half * stage.pixel))
     };
     let meets = |i: usize, (middle, half): (Vec2, Vec2)| stage.beams[i].meets_rectangle(middle, half);
@@ -38,7 +39,7 @@ pub fn beams(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize), tile:
     let of_tile = met.len();
     for block in 0..(TILE / BLOCK) * (TILE / BLOCK) {
         let (x, y) = (block % (TILE / BLOCK) * BLOCK, block / (TILE / BLOCK) * BLOCK);
-        let (left, top) = ((corner.0 + x) as f32, (corner.1 + y) as f32);
+        let (left, top) = (number(corner.0 + x), number(corner.1 + y));
         let here = square((corner.0 + x, corner.1 + y), BLOCK);
         met.truncate(of_tile);
         for k in 0..of_tile {
@@ -53,7 +54,7 @@ pub fn beams(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize), tile:
         counters.add(Counter::Beams, BLOCK * BLOCK * of_block.len());
         for row in 0..BLOCK {
             let at = (y + row) * TILE + x;
-            let direction = stage.directions(splat(left + 0.5) + RAMP, splat(top + 0.5 + row as f32));
+            let direction = stage.directions(splat(left + 0.5) + RAMP, splat(top + 0.5 + number(row)));
             let rays = Rays8 { origin: V3::splat(stage.scene.camera.position), direction };
             let end = F::ONE / (load(&tile.nearness[at..]) * direction.dot(forward));
             let [red, green, blue] = tile.rgb.each_ref().map(|plane| load(&plane[at..]));

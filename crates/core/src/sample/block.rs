@@ -1,7 +1,7 @@
 //! What is known of traced samples, in blocks of eight: a packet's results are stored as vectors.
 
-use crate::math::Vec3;
 use crate::math::lanes::{F, U, V3, splat};
+use crate::math::{Vec3, number};
 use crate::quality::Rung;
 use crate::render::Stage;
 use crate::scene::{Material, Voxels};
@@ -140,7 +140,7 @@ impl<'a> Sample<'a> {
         let distance = away.length();
         let across = self.normal().dot(away).abs().max(1e-3 * distance);
         let footprint = stage.pixel * distance * distance / across;
-        stage.quality.rung > Rung::Colour && relief_within(&material.texture, footprint, side as f32)
+        stage.quality.rung > Rung::Colour && relief_within(&material.texture, footprint, number(side))
     }
     pub fn code(self, lamp: usize) -> f32 {
         self.block.codes[lamp].as_array()[self.lane]

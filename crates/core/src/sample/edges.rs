@@ -8,8 +8,8 @@ use super::refine::Cell;
 use super::tile::{Kind, Record, TILE, Tile};
 use super::wave::{Position, Scratch, trace};
 use crate::counters::Counter;
-use crate::math::Vec3;
 use crate::math::sampling::r2;
+use crate::math::{Vec3, number};
 use crate::render::Stage;
 
 /// Samples that are traced at once: keeps the lists in the cache.
@@ -18,7 +18,7 @@ const BATCH: usize = 1024;
 /// Position of sample `i` of the pixel at (x, y).
 fn place(x: usize, y: usize, i: u32) -> Position {
     let offset = r2(i);
-    (x as f32 + offset.x, y as f32 + offset.y)
+    (number(x) + offset.x, number(y) + offset.y)
 }
 
 fn compress(c: Vec3) -> Vec3 {
@@ -70,7 +70,7 @@ pub fn smooth_edges(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize)
                     sum += compress(scratch.samples.get(next).colour());
                     next += 1;
                 }
-                let colour = expand(sum / (count + 1) as f32);
+                let colour = expand(sum / number(count + 1));
                 tile.set(x, y, colour, Record::new(Kind::Smoothed, 1));
             }
         }

@@ -10,8 +10,8 @@ use super::scatter;
 use super::tile::{Kind, Record, TILE, Tile};
 use super::wave::soft;
 use crate::counters::{Counter, Counters};
-use crate::math::Vec3;
 use crate::math::lanes::{F, LANE_INDEX, U, V3, splat, splat_u};
+use crate::math::{Vec3, number};
 use crate::quality::Rung;
 use crate::render::Stage;
 use crate::scene::Channel;
@@ -76,7 +76,7 @@ pub(super) fn fill(
     if stage.wants_depths() {
         fill_nearness(cell, known, tile);
     }
-    let scale = splat(1.0 / cell.size as f32);
+    let scale = splat(1.0 / number(cell.size));
     let shift = cell.size.trailing_zeros();
     let patch = Patch::of(
         known,
@@ -96,8 +96,8 @@ pub(super) fn fill(
         let x = small(index & splat_u(cell.size as u32 - 1));
         let y = small(index >> shift);
         let between = patch.at(x * scale, y * scale);
-        let px = x + splat((corner.0 + cell.x) as f32 + 0.5);
-        let py = y + splat((corner.1 + cell.y) as f32 + 0.5);
+        let px = x + splat(number(corner.0 + cell.x) + 0.5);
+        let py = y + splat(number(corner.1 + cell.y) + 0.5);
         let colour = match (rung, &light) {
             (Rung::Surface, _) => between + known_surface(stage, first, px, py, counters),
             (_, Some(light)) => {
@@ -127,7 +127,7 @@ fn fill_nearness(cell: Cell, known: &Known, tile: &mut Tile) {
     let [a, b, c, d, _] = known.samples.map(|s| 1.0 / s.depth());
     for i in 0..cell.size * cell.size {
         let (column, row) = (i % cell.size, i / cell.size);
-        let (x, y) = (column as f32 / cell.size as f32, row as f32 / cell.size as f32);
+        let (x, y) = (number(column) / number(cell.size), number(row) / number(cell.size));
         let (upper, lower) = (a + (b - a) * x, c + (d - c) * x);
         tile.nearness[(cell.y + row) * TILE + cell.x + column] = upper + (lower - upper) * y;
     }

@@ -18,8 +18,8 @@ use super::wave::{Scratch, trace};
 use crate::counters::{Counter, Counters};
 use crate::cull::{Bounds, Region, may_cover, occluders};
 use crate::features;
-use crate::math::Vec3;
 use crate::math::lanes::F;
+use crate::math::{Vec3, number};
 use crate::quality::Rung;
 use crate::render::Stage;
 use crate::shade::MAX_LAMPS;
@@ -137,7 +137,7 @@ fn refine_side(
     cells.clear();
     Cell { x: 0, y: 0, size: TILE }.split(cell, stage, corner, side, &mut cells);
     if measures {
-        tile.measured[0] += cells.len() as f32;
+        tile.measured[0] += number(cells.len());
         cells.retain(|cell| tile.record[cell.y * TILE + cell.x].kind() != Kind::Traced);
     }
     let mut done = 0;
@@ -208,7 +208,7 @@ fn sample(
             let slot = &mut grid[y * GRID + x];
             if *slot == u32::MAX {
                 *slot = (before + missing.len()) as u32;
-                missing.push(((corner.0 + x) as f32 + 0.5, (corner.1 + y) as f32 + 0.5));
+                missing.push((number(corner.0 + x) + 0.5, number(corner.1 + y) + 0.5));
             }
         }
     }
@@ -336,8 +336,8 @@ impl Surroundings {
     ) -> bool {
         let id = known.samples[0].id();
         let own = if id >= 0.0 { id as usize >> 2 } else { usize::MAX };
-        let half = cell.size as f32 * 0.5;
-        let middle = ((corner.0 + cell.x) as f32 + half + 0.5, (corner.1 + cell.y) as f32 + half + 0.5);
+        let half = number(cell.size) * 0.5;
+        let middle = (number(corner.0 + cell.x) + half + 0.5, number(corner.1 + cell.y) + half + 0.5);
         let at = stage.on_screen(middle.0, middle.1);
         let reach = Vec2::splat(half * stage.pixel);
         let [depths @ .., _] = known.samples.map(|s| s.depth());

@@ -4,9 +4,9 @@
 //! 4x4x4 cells hold a bit for each solid cell, so a ray asks one word for 64 of them.
 
 use super::Field;
-use crate::math::Vec3;
 use crate::math::hash::{hash2, mix, unit};
 use crate::math::lanes::{F, TRUE, V3, splat};
+use crate::math::{Vec3, number};
 use crate::trace::distance;
 
 /// A grid of voxels; the cells are kept with the bricks, so they change only by [`Voxels::edit`].
@@ -120,7 +120,7 @@ impl Voxels {
             let (x, y, z) = (i % nx, i / nx % ny, i / (nx * ny));
             *value = rule([x as i32, y as i32, z as i32], *value);
             if Self::is_solid(*value) {
-                let corner = Vec3::new(x as f32, y as f32, z as f32);
+                let corner = Vec3::new(number(x), number(y), number(z));
                 (least, most) = (least.min(corner), most.max(corner + 1.0));
                 self.bricks[(z / 4 * by + y / 4) * bx + x / 4] |= 1 << (x & 3 | (y & 3) << 2 | (z & 3) << 4);
             }
@@ -178,7 +178,7 @@ impl Voxels {
         self.edit_all_by(&mut |[x, y, z], old| {
             if x & 7 == 0 {
                 let middle = |i: f32| Vec3::new(x as f32 + i + 0.5, y as f32 + 0.5, z as f32 + 0.5);
-                let p = V3::from_fn(|i| lo + middle(i as f32) * cell);
+                let p = V3::from_fn(|i| lo + middle(number(i)) * cell);
                 eight = distance(body, p, &[TRUE; Field::MOST], None).to_array();
             }
             if eight[x as usize & 7] < 0.0 { value } else { old }

@@ -6,6 +6,7 @@
 //! cell or one number each of eight cells along x.
 
 use crate::math::lanes::{Bound, F, splat};
+use crate::math::number;
 use crate::parallel;
 
 /// Cells of the border before each row, and after the last.
@@ -71,7 +72,7 @@ impl Grid {
     /// cells around it. Points count cells as places do, and are bounded before they become whole numbers.
     #[inline(never)]
     pub fn sample(&self, field: &[Eight], at: F) -> F {
-        let [x, y, z] = self.size.map(|n| n as f32);
+        let [x, y, z] = self.size.map(number);
         let most = F::new([x, y, z, 0.0, 0.0, 0.0, 0.0, 0.0]);
         let at = at.at_least(F::ZERO).at_most(most + F::ONE);
         let below = at.at_most(most).fast_trunc_int();

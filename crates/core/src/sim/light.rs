@@ -5,6 +5,7 @@ use super::{DENSITY, Simulation, State};
 use crate::counters::{Counter, Counters};
 use crate::math::lanes::{Bound, F, V3, least, splat};
 use crate::math::lanes_fn::exp;
+use crate::math::number;
 use crate::scene::{Rules, Smoke, Voxels};
 use crate::shade::Lamp;
 use crate::trace::{Rays8, voxels};
@@ -101,7 +102,7 @@ impl<'a> Volume<'a> {
         // Steps are counted from the eye, so that they stay where they are when smoke comes nearer.
         let first = least(met.select(enter, splat(f32::INFINITY))).as_array()[0] / length;
         for k in 0..MOST_STEPS {
-            let from = splat((first.floor() + k as f32) * length);
+            let from = splat((first.floor() + number(k)) * length);
             let left = exit - from;
             let live = met & left.simd_gt(F::ZERO) & through.simd_gt(splat(OPAQUE));
             if !live.any() {

@@ -5,6 +5,7 @@
 
 use super::STEPS;
 use super::score::{Score, Section};
+use crate::math::number;
 use crate::math::scalar::exp;
 
 /// Frames of a picture in two sixteenths, at 60 a second.
@@ -57,7 +58,7 @@ pub fn last(bars: &[Strikes], frame: u64) -> Option<(f32, f32)> {
         let bar = bars.get((step / u64::from(STEPS)) as usize);
         if let Some(bar) = bar.filter(|bar| bar.steps >> (step % u64::from(STEPS)) & 1 == 1) {
             let since = frame - step * FRAMES / 2;
-            return Some((since as f32 / 60.0, 0.01 * f32::from(bar.level)));
+            return Some((number(since as usize) / 60.0, 0.01 * f32::from(bar.level)));
         }
         step = step.checked_sub(1)?;
     }

@@ -7,10 +7,10 @@
 use super::walk::Walk;
 use super::{Rays8, Span};
 use crate::counters::{Counter, Counters};
-use crate::math::Vec3;
 use crate::math::hash::{mix_x8, unit_x8};
 use crate::math::lanes::{Bound, F, V3, from_bits, splat};
 use crate::math::noise;
+use crate::math::{Vec3, number};
 use crate::scene::Voxels;
 
 /// How far before its faces a walk looks for its cell, in cells: more than rounding moves a point.
@@ -43,7 +43,7 @@ pub fn voxels(rays: &Rays8, grid: &Voxels, limit: F, counters: &mut Counters) ->
         let mut from = cell;
         for axis in [2, 1, 0] {
             cell[axis] = walk.next(cell[axis], axis, across[axis]);
-            let bricks = splat(grid.bricks()[axis] as f32);
+            let bricks = splat(number(grid.bricks()[axis]));
             let brick = (cell[axis] * splat(0.25)).floor();
             from[axis] = brick * splat(4.0);
             inside &= brick.simd_ge(F::ZERO) & brick.simd_lt(bricks);
