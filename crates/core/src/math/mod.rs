@@ -11,6 +11,8 @@
 //! * [`lanes_fn`]: the elementary functions for eight numbers, in f32.
 //! * [`hash`]: random numbers as a pure function of pixel, frame and dimension.
 
+use glam::swizzles::Vec3Swizzles;
+
 /// Three of them.
 pub use glam::Mat3A as Mat3;
 
@@ -18,7 +20,6 @@ pub use glam::Mat3A as Mat3;
 pub fn cross(a: Vec3, b: Vec3) -> Vec3 {
     (a.zxy() * b - b.zxy() * a).zxy()
 }
-use glam::swizzles::Vec3Swizzles;
 
 /// A count below 2^31 as a number: one instruction, where any unsigned word would take a branch.
 #[inline(always)]

@@ -58,7 +58,7 @@ const RUSTFLAGS: &[&str] = &[
 ];
 
 /// Flags for the last step only, in which all crates are one; before it they would spoil what is inlined.
-/// Found by trying some 250 of LLVM's choices, 880 bytes together.
+/// Found by trying some 250 of LLVM's choices, 866 bytes together.
 const LAST_FLAGS: &[&str] = &[
     // The order of instructions that keeps fewest values alive (420); loads pass stores that they can't meet (150).
     "-Cllvm-args=-pre-RA-sched=list-hybrid",
