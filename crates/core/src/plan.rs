@@ -5,10 +5,11 @@
 //! demands 0 of all that its plan doesn't name and more than 0 of all that it names.
 
 use crate::counters::Counter;
+use crate::features;
 use crate::mesh::Instance;
 use crate::quality::{Quality, Rung};
 use crate::sample::ROUGH;
-use crate::scene::{Field, Figures, LightKind, Material, Pattern, Scene, Shading};
+use crate::scene::{Field, Figures, LightKind, Material, Pattern, Rules, Scene, Shading};
 use crate::shade::MAX_POINTS;
 
 /// The machinery that a frame calls for, as the counters that it moves.
@@ -88,11 +89,12 @@ impl Plan {
             (Counter::FogSegments, scene.fog.is_some()),
             (Counter::SmokeCells, scene.smoke.is_some_and(|smoke| smoke.steps > 0)),
             (Counter::SmokeShown, scene.smoke.is_some()),
-            (Counter::SmokeMarched, scene.smoke.is_some()),
+            (Counter::SmokeMarched, scene.smoke.is_some() && quality.smoke > 0.0),
             (Counter::Beams, !scene.beams.is_empty() || titles().any(|scene| !scene.beams.is_empty())),
             (Counter::KnownSurfaces, adaptive && known && scene.has_known_surfaces()),
             (Counter::Traced, !adaptive || quality.smallest <= 1 || scene.split.is_some()),
             (Counter::Interpolated, adaptive),
+            (Counter::Filled, adaptive),
             (Counter::EdgeSamples, quality.edge_samples.max(quality.samples) > 0),
             (Counter::BloomPasses, scene.grade.bloom > 0.0 || titles().any(|scene| scene.grade.bloom > 0.0)),
             (Counter::Measured, adaptive && scene.split.is_some()),
@@ -128,9 +130,19 @@ pub fn warnings(scene: &Scene, quality: &Quality) -> Vec<&'static str> {
     let facets: usize = scene.meshes.instances().iter().map(|i| i.mesh().triangles().len()).sum();
     let clear = |i: &Instance| scene.materials[i.material].is_transparent();
     let spot = |kind: LightKind| matches!(kind, LightKind::Spot { inner, outer, .. } if inner <= outer);
+    let smoke = scene.smoke.map(|smoke| smoke.rules);
+    // Those that it has, as a part of its state, must be where the scene's lights are.
+    let stand = |rules: &Rules| scene.lights.iter().zip(rules.lamps).all(|(light, at)| light.position == at);
     let faults = [
         (quality.depth < 2 && materials().any(|m| m.is_transparent()), "glass needs a depth of two or more"),
         (quality.depth < 1 && materials().any(|m| m.reflection > 0.0), "mirrors need a depth of one or more"),
+        (quality.average > 1 && !features::AVERAGE, "averages are left out of this build"),
+        (smoke.is_some() && !features::SMOKE, "smoke is left out of this build"),
+        (smoke.is_some() && quality.smoke <= 0.0, "smoke needs steps longer than 0 to be seen"),
+        (
+            smoke.is_some_and(|rules| !stand(rules)),
+            "the lamps of the smoke are not where the first lights are",
+        ),
         (scene.lights.len() + scene.emitters.len() > 8, "lamps after the eighth cast no shadow"),
         (materials().filter(|m| m.is_transparent()).count() > 23, "glass after the 23rd casts no shadow"),
         (
