@@ -8,11 +8,12 @@ use luc::show;
 use luc_core::counters::Counter;
 use luc_core::math::Vec3;
 use luc_core::math::scalar::exp;
+use luc_core::plan::Plan;
 use luc_core::quality::Quality;
 use luc_core::render::Renderer;
 use luc_core::scene::{
     Air, Background, Camera, Cylinder, Edit, Grade, Light, LightKind, Material, Plane, Rules, Scene, Smoke,
-    Sphere, Stop, Voxels,
+    Sphere, Stop, Triangle, Voxels,
 };
 use support::picture::{Picture, channels, distance, psnr};
 use support::{golden, is_there, luc, run};
@@ -63,6 +64,9 @@ static SLAB: Rules = Rules {
     air: Air { density: 0.6, ..Air::DEFAULT }.motion(CELL),
     ..Rules::new(slab)
 };
+
+/// The lump, on which bodies cast shadows.
+static SHADED: Rules = Rules { shaded: true, ..RULES };
 
 /// The lump in the evening, straight ahead.
 fn scene() -> Scene {
@@ -232,6 +236,61 @@ fn the_shadow_of_even_smoke_is_that_of_its_depth() {
         let off = (shaded[k] - dimmed[k]).abs();
         assert!(off <= 4 && open[k] > dimmed[k] + 30, "{shaded:?}, not {dimmed:?}, of {open:?}");
     }
+}
+
+#[test]
+fn bodies_cast_shadows_on_smoke_that_asks_for_them() {
+    let quality = exact(1.0);
+    let mut open = scene();
+    open.smoke = open.smoke.map(|smoke| Smoke { rules: &SHADED, ..smoke });
+    let frame = |scene: &Scene| {
+        let (mut renderer, mut pixels) = (Renderer::default(), vec![0; (SIZE.0 * SIZE.1) as usize]);
+        renderer.frame(scene, 0, SIZE, &quality, &mut pixels);
+        let rays = renderer.counters.get(Counter::SmokeShadowRays);
+        assert_eq!(rays > 0, Plan::of(scene, &quality).names(Counter::SmokeShadowRays));
+        (Picture { width: SIZE.0, height: SIZE.1, pixels }, rays)
+    };
+    let (lit, rays) = frame(&open);
+    // Where there are no bodies, each lamp is asked for from each place, in vain.
+    let mut renderer = Renderer::default();
+    renderer.frame(&open, 0, SIZE, &quality, &mut vec![0; (SIZE.0 * SIZE.1) as usize]);
+    assert_eq!(rays, 2 * renderer.counters.get(Counter::SmokeMarched));
+    assert_eq!(lit.compare(&draw(&scene(), &quality)), None, "no bodies, no shadow");
+    // A ball around a lamp takes its light away, to the bit.
+    let around = |k: usize, material| {
+        let mut hidden = open.clone();
+        hidden.spheres.push(Sphere { centre: RULES.lamps[k], radius: 0.5, material: 0, blend: 0.0 });
+        hidden.materials.push(material);
+        hidden
+    };
+    for k in 0..2 {
+        let mut off = scene();
+        off.lights[k].colour = Vec3::ZERO;
+        let (hidden, rays) = frame(&around(k, Material::default()));
+        assert_eq!(hidden.compare(&draw(&off, &quality)), None, "lamp {k}");
+        assert!(rays > 0 && worst(&hidden, &lit).0 > 20, "lamp {k} lights the smoke");
+    }
+    // One of glass gives it its colour.
+    let glass = Material { transparency: 1.0, shadow: Vec3::new(1.0, 0.5, 0.25), ..Material::default() };
+    let mut dyed = scene();
+    dyed.lights[0].colour *= glass.shadow;
+    assert!(worst(&frame(&around(0, glass)).0, &draw(&dyed, &quality)).0 <= 1);
+    // Half a wall shades the half behind it: of the lump as seen from the lamp, the far side.
+    let mut wall = open.clone();
+    let (lamp, eye) = (RULES.lamps[1], open.camera.position);
+    let to = Vec3::new(3.0, 1.0, -1.0) - lamp;
+    let side = Vec3::new(-to.z, 0.0, to.x).normalize();
+    let edge = lamp + to * 0.1;
+    let corners = [edge + Vec3::Y, edge - Vec3::Y, edge + side];
+    wall.triangles.push(Triangle { corners, material: 0 });
+    wall.materials.push(Material::default());
+    let straight = |p: Vec3| (p - eye).normalize().dot((Vec3::new(3.0, 1.0, -1.0) - eye).normalize());
+    assert!(corners.iter().all(|&p| straight(p) < 0.92), "it is out of the picture");
+    let (half, _) = frame(&wall);
+    let light = |picture: &Picture| picture.pixels.iter().map(|&p| i64::from(channels(p)[2])).sum::<i64>();
+    let (all, none) = (light(&lit), light(&frame(&around(1, Material::default())).0));
+    let share = (light(&half) - none) as f64 / (all - none) as f64;
+    assert!((0.25..0.75).contains(&share), "{share} of the lamp's light is left");
 }
 
 #[test]

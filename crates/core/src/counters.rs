@@ -20,7 +20,7 @@ macro_rules! counters {
             /// Whether rays are counted, each once: those of rough mirrors are among the reflected ones.
             pub fn is_ray(self) -> bool {
                 use Counter::*;
-                matches!(self, PrimaryRays | ReflectedRays | RefractedRays | ScatterRays | ShadowRays)
+                matches!(self, PrimaryRays | ReflectedRays | RefractedRays | ScatterRays | ShadowRays | SmokeShadowRays)
             }
         }
     };
@@ -67,6 +67,7 @@ counters! {
     SmokeCells "cells of smoke simulated",
     SmokeShown "cells of smoke shown",
     SmokeMarched "places in smoke marched through",
+    SmokeShadowRays "shadow rays from smoke",
     Beams "rays against beams",
     KnownSurfaces "known surfaces",
     Traced "pixels traced",

@@ -43,6 +43,9 @@ impl Plan {
         let bumps = materials().any(|m| m.texture.bump > 0.0);
         let textured = grain || bumps || !scene.voxels.is_empty();
         let pattern = |p| materials().any(|m| m.texture.is_visible() && m.texture.pattern == p);
+        let lamps_shade = fills < scene.lights.len() + scene.emitters.len();
+        let marches = scene.smoke.is_some() && quality.smoke > 0.0;
+        let shades = marches && lamps_shade && scene.smoke.is_some_and(|smoke| smoke.rules.shaded);
         let known = quality.rung == Rung::Surface || (quality.rung == Rung::Light && textured);
         let titles = scene.split.map(|split| {
             let (rays, height, error) = ([0; 2], 0.5625, 0.0);
@@ -72,7 +75,7 @@ impl Plan {
             (Counter::EmitterTests, (mirrors || glass) && !scene.emitters.is_empty()),
             (Counter::DiscTests, !scene.background.discs.is_empty()),
             (Counter::Glows, !scene.background.glows.is_empty()),
-            (Counter::ShadowRays, lit && fills < scene.lights.len() + scene.emitters.len()),
+            (Counter::ShadowRays, lit && lamps_shade),
             (Counter::SoftShadowRays, shows && soft),
             (Counter::LightEvaluations, lit),
             (Counter::Phong, shines && scene.shading == Shading::Phong),
@@ -89,7 +92,8 @@ impl Plan {
             (Counter::FogSegments, scene.fog.is_some()),
             (Counter::SmokeCells, scene.smoke.is_some_and(|smoke| smoke.steps > 0)),
             (Counter::SmokeShown, scene.smoke.is_some()),
-            (Counter::SmokeMarched, scene.smoke.is_some() && quality.smoke > 0.0),
+            (Counter::SmokeMarched, marches),
+            (Counter::SmokeShadowRays, shades),
             (Counter::Beams, !scene.beams.is_empty() || titles().any(|scene| !scene.beams.is_empty())),
             (Counter::KnownSurfaces, adaptive && known && scene.has_known_surfaces()),
             (Counter::Traced, !adaptive || quality.smallest <= 1 || scene.split.is_some()),

@@ -230,7 +230,7 @@ fn shade_packet(
         // Before the fog, which is mostly behind it.
         let pace = stage.quality.smoke * if level > 0 { 3.0 } else { 1.0 };
         counters.watch.enter(Phase::SmokeRender);
-        let (through, glow) = volume.march(rays, hit.t, pace, &stage.lamps, counters);
+        let (through, glow) = volume.march(stage, rays, hit.t, pace, counters);
         counters.watch.enter(Phase::Shading);
         light += weight * glow;
         weight = weight * through;

@@ -105,6 +105,8 @@ pub struct Rules {
     pub ambient: Vec3,
     /// Light given off per unit of temperature, linear RGB.
     pub glow: Vec3,
+    /// Whether bodies cast shadows on it: a ray to each lamp from each place that is marched through.
+    pub shaded: bool,
 }
 
 impl Rules {
@@ -124,6 +126,7 @@ impl Rules {
             gain: 1.0,
             ambient: Vec3::ZERO,
             glow: Vec3::ZERO,
+            shaded: false,
         }
     }
 

@@ -290,7 +290,7 @@ fn highlight(stage: &Stage, s: &Surface, l: V3, v: V3, n_l: F, counters: &mut Co
 }
 
 /// The lamp's colour behind the transparent shapes of each lane's code.
-fn tinted(stage: &Stage, lamp: &Lamp, code: F) -> V3 {
+pub fn tinted(stage: &Stage, lamp: &Lamp, code: F) -> V3 {
     let colour = V3::splat(lamp.colour);
     if !code.simd_gt(F::ZERO).any() {
         return colour;

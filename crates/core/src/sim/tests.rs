@@ -4,8 +4,9 @@
 use super::*;
 use crate::math::Vec3;
 use crate::math::lanes::{F, V3, splat};
+use crate::quality::Quality;
+use crate::render::Stage;
 use crate::scene::{Air, Edit, Light, LightKind, Scene, Voxels};
-use crate::shade::{Lamp, lamps};
 use crate::trace::Rays8;
 use crate::trace::check::{Random, packet};
 
@@ -227,7 +228,7 @@ fn any_number_of_threads_and_any_way_to_a_step_gives_the_same_bits() {
 }
 
 /// What is seen of smoke, and the lamps where it says.
-fn seen(s: &Smoke, look: impl FnOnce(&Volume, &[Lamp])) {
+fn seen(s: &Smoke, look: impl FnOnce(&Volume, &Stage)) {
     let simulation = play(*s, s.steps);
     let mut shown = Vec::new();
     let volume = Volume::new(s, &simulation, &mut shown, &mut Counters::default());
@@ -235,7 +236,7 @@ fn seen(s: &Smoke, look: impl FnOnce(&Volume, &[Lamp])) {
     let mut scene = Scene { lights: s.rules.lamps.map(light).into(), ..Default::default() };
     // One more, within.
     scene.lights.push(light(Vec3::new(0.8, 3.5, 0.6)));
-    look(&volume, &lamps(&scene));
+    look(&volume, &Stage::new(&scene, &Quality::PRESETS[3].1, 8, 8));
 }
 
 #[test]
@@ -243,14 +244,14 @@ fn even_smoke_dims_as_beer_lambert_and_light_by_its_depth() {
     let air = Air { density: 0.7, ..Air::DEFAULT }.motion(0.1);
     let s = made(Rules { extinction: 3.0, air, ..*smoke(full, Air::DEFAULT).rules });
     let s = Smoke { steps: 40, ..s };
-    seen(&s, |volume, lamps| {
+    seen(&s, |volume, stage| {
         let mut counters = Counters::default();
         let rays = |direction: Vec3| Rays8 {
             origin: V3::splat(Vec3::new(0.8, 1.0, 0.6) - direction * 4.0),
             direction: V3::splat(direction),
         };
         for (direction, length) in [(Vec3::X, 1.6), (Vec3::Y, 2.0), (Vec3::NEG_Z, 1.2)] {
-            let mut march = |end: f32| volume.march(&rays(direction), splat(end), 0.25, lamps, &mut counters);
+            let mut march = |end: f32| volume.march(stage, &rays(direction), splat(end), 0.25, &mut counters);
             let (through, light) = march(f32::INFINITY);
             // At its border the density runs out over a cell, the same in all.
             let exact = crate::math::scalar::exp(-2.1 * length);
@@ -278,7 +279,7 @@ fn even_smoke_dims_as_beer_lambert_and_light_by_its_depth() {
 fn steps_change_little_an_early_end_less_and_lanes_nothing_at_all() {
     let s = made(Rules { extinction: 9.0, ambient: Vec3::ONE, ..*smoke(burning, AIR).rules });
     let s = Smoke { steps: 30, ..s };
-    seen(&s, |volume, lamps| {
+    seen(&s, |volume, stage| {
         let mut counters = Counters::default();
         let mut count = 0;
         for case in 0..400 {
@@ -291,7 +292,7 @@ fn steps_change_little_an_early_end_less_and_lanes_nothing_at_all() {
             });
             let ends = F::new(std::array::from_fn(|_| random.range(0.5, 8.0)));
             let mut march =
-                |rays: &Rays8, ends: F, pace: f32| volume.march(rays, ends, pace, lamps, &mut counters);
+                |rays: &Rays8, ends: F, pace: f32| volume.march(stage, rays, ends, pace, &mut counters);
             let (through, light) = march(&rays, ends, 1.0);
             let (fine, bright) = march(&rays, ends, 0.05);
             for lane in 0..8 {
