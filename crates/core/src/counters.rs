@@ -55,7 +55,10 @@ counters! {
     Phong "Phong highlights",
     CookTorrance "Cook-Torrance highlights",
     Ggx "GGX highlights",
-    FillLights "evaluations of fill lights",
+    PlainLights "aims at plain lights",
+    SpotLights "aims at spots",
+    RectangleLights "aims at shining rectangles",
+    FillLights "aims at fill lights",
     PointLights "evaluations of small lights",
     TextureLookups "texture lookups",
     Cells "cells of textures",
@@ -102,6 +105,10 @@ pub struct Counters {
     /// Where the time went, if a study wants to know.
     pub watch: Stopwatch,
 }
+
+// What builds without counting pay for it.
+#[cfg(not(any(feature = "counters", feature = "split", feature = "study")))]
+const _: () = assert!(size_of::<Counters>() == 0);
 
 // Arrays over 32 have no default of their own.
 #[cfg(feature = "counters")]

@@ -23,7 +23,8 @@ impl Plan {
         let lamps = !scene.lights.is_empty() || !scene.emitters.is_empty();
         let shows = materials().any(|m| m.diffuse > 0.0 || m.specular.max_element() > 0.0);
         let lit = lamps && shows;
-        let fills = scene.lights.iter().filter(|light| light.kind == LightKind::Fill).count();
+        let number = |kind| scene.lights.iter().filter(|light| light.kind == kind).count();
+        let (plain, fills) = (number(LightKind::Point), number(LightKind::Fill));
         let soft = scene.soft && quality.shadow_samples > 1 && !scene.emitters.is_empty();
         let points = !scene.points.is_empty() && shows;
         let shines = lit || points;
@@ -81,6 +82,9 @@ impl Plan {
             (Counter::Phong, shines && scene.shading == Shading::Phong),
             (Counter::CookTorrance, shines && scene.shading == Shading::CookTorrance),
             (Counter::Ggx, shines && scene.shading == Shading::Ggx),
+            (Counter::PlainLights, lit && plain > 0),
+            (Counter::SpotLights, lit && plain + fills < scene.lights.len()),
+            (Counter::RectangleLights, lit && !scene.emitters.is_empty()),
             (Counter::FillLights, lit && fills > 0),
             (Counter::PointLights, points),
             (Counter::TextureLookups, grain),

@@ -153,6 +153,9 @@ pub fn direct(
     let mirrors = s.value(Channel::Reflection).simd_gt(zero);
     let start = s.point + s.facing * s.clearance;
     for (k, lamp) in stage.lamps.iter().enumerate() {
+        if cfg!(feature = "counters") {
+            counters.add(lamp.counter(), 8);
+        }
         let aim = Aim::at(lamp.position, s, start);
         let reach = lamp.lobe(-aim.l);
         // Mirrors show shining rectangles themselves, in place of a highlight.
@@ -204,7 +207,6 @@ pub fn direct(
             continue;
         }
         counters.add(Counter::LightEvaluations, 8);
-        counters.add(Counter::FillLights, 8 * usize::from(lamp.is_fill));
         let open = F::ONE + code.at_most(zero);
         let mut light = tinted(stage, lamp, code) * (lit & (reach * open / aim.d2));
         if let Some(volume) = stage.volume.filter(|_| features::SMOKE) {
