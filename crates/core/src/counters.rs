@@ -68,6 +68,7 @@ counters! {
     Bumps "bumps of normals",
     FogSegments "fog segments",
     SmokeCells "cells of smoke simulated",
+    SmokeSwirled "cells of smoke swirled",
     SmokeShown "cells of smoke shown",
     SmokeMarched "places in smoke marched through",
     SmokeShadowRays "shadow rays from smoke",

@@ -18,6 +18,8 @@ pub const VOXELS: bool = cfg!(feature = "voxels");
 pub const SMOKE: bool = cfg!(feature = "smoke");
 /// Shadows of bodies on smoke.
 pub const SMOKE_SHADOWS: bool = cfg!(feature = "smoke-shadows");
+/// Whirls in smoke that are kept turning.
+pub const SWIRL: bool = cfg!(feature = "swirl");
 /// Ambient occlusion by fields.
 pub const FIELD_OCCLUSION: bool = cfg!(feature = "field-occlusion");
 /// Beams of light.
@@ -82,7 +84,7 @@ pub const EFFECT_TUBE: bool = cfg!(feature = "effect-tube");
 pub const EFFECT_GRAIN: bool = cfg!(feature = "effect-grain");
 
 /// Each feature with the counter that shows it at work.
-pub const ALL: [(&str, Counter); 33] = [
+pub const ALL: [(&str, Counter); 34] = [
     ("ggx", Counter::Ggx),
     ("bumps", Counter::Bumps),
     ("fields", Counter::FieldSteps),
@@ -90,6 +92,7 @@ pub const ALL: [(&str, Counter); 33] = [
     ("voxels", Counter::VoxelSteps),
     ("smoke", Counter::SmokeShown),
     ("smoke-shadows", Counter::SmokeShadowRays),
+    ("swirl", Counter::SmokeSwirled),
     ("beams", Counter::Beams),
     ("endless", Counter::EndlessTests),
     ("bounces", Counter::ScatterRays),

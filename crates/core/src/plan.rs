@@ -95,6 +95,10 @@ impl Plan {
             (Counter::Bumps, bumps),
             (Counter::FogSegments, scene.fog.is_some()),
             (Counter::SmokeCells, scene.smoke.is_some_and(|smoke| smoke.steps > 0)),
+            (
+                Counter::SmokeSwirled,
+                scene.smoke.is_some_and(|smoke| smoke.steps > 0 && smoke.rules.air.swirl() > 0.0),
+            ),
             (Counter::SmokeShown, scene.smoke.is_some()),
             (Counter::SmokeMarched, marches),
             (Counter::SmokeShadowRays, shades),

@@ -2,6 +2,7 @@
 //! less divergence with each sweep, the same on any number of threads and by any way to a step.
 
 use super::*;
+use crate::counters::Counter;
 use crate::math::Vec3;
 use crate::math::lanes::{F, V3, splat};
 use crate::quality::Quality;
@@ -48,6 +49,7 @@ const AIR: Air = Air {
     cool: 0.3,
     drag: 0.2,
     sweeps: 12,
+    swirl: 0.0,
 };
 
 fn smoke(figure: fn(u32) -> Voxels, air: Air) -> Smoke {
@@ -88,7 +90,10 @@ fn however_long_it_burns_all_is_finite_bounded_and_never_subnormal() {
         burning(1)
     }
     let air = Air { fade: 0.0, cool: 0.0, drag: 0.0, lift: 40.0, ..AIR };
-    for (name, s) in [("ever", smoke(ever, air)), ("burning", smoke(burning, AIR))] {
+    let boiling = Air { swirl: 0.5, ..air };
+    for (name, s) in
+        [("ever", smoke(ever, air)), ("boiling", smoke(ever, boiling)), ("burning", smoke(burning, AIR))]
+    {
         let mut simulation = Simulation::default();
         let mut moved = false;
         for steps in 1..=3_000 {
@@ -183,9 +188,53 @@ fn each_sweep_leaves_less_divergence() {
     assert!(last < 0.6 * first, "{last} of {first}");
 }
 
+/// Sum of squares of the velocity's curl.
+fn turning(simulation: &Simulation) -> f64 {
+    let grid = Grid { size: SIZE };
+    let steps = grid.steps();
+    let cells = &simulation.state().cells;
+    let mut sum = 0.0;
+    for i in (0..SIZE.iter().product()).map(|i: usize| [i % 16, i / 16 % 20, i / 320]) {
+        let at = grid.index(i.map(|i| i + 1));
+        let across = |axis: usize, of: usize| {
+            0.5 * f64::from(cells[at + steps[axis]][of] - cells[at - steps[axis]][of])
+        };
+        for (a, b) in [(1, 2), (2, 0), (0, 1)] {
+            let w = across(a, b) - across(b, a);
+            sum += w * w;
+        }
+    }
+    sum
+}
+
+#[test]
+fn swirl_keeps_whirls_turning_and_still_air_still() {
+    let with = |figure, swirl, steps| play(smoke(figure, Air { swirl, ..AIR }), steps);
+    let mut last = turning(&with(burning, 0.0, 100));
+    for swirl in [0.1, 0.2, 0.3] {
+        let now = turning(&with(burning, swirl, 100));
+        assert!(now > 1.05 * last, "{now} after {last} with a swirl of {swirl}");
+        last = now;
+    }
+    let calm = |swirl| play(smoke(puff, Air { swirl, ..Air::DEFAULT }), 30);
+    assert!(same(&calm(0.0), &calm(0.3)), "where nothing moves, nothing begins to");
+    // On any number of threads.
+    let on = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| with(burning, 0.3, 60))
+    };
+    assert!(same(&on(1), &on(3)));
+    // It is counted.
+    let mut counters = Counters::default();
+    Simulation::default()
+        .run(&Smoke { steps: 2, ..smoke(burning, Air { swirl: 0.2, ..AIR }) }, &mut counters);
+    let cells = if cfg!(feature = "counters") { 2 * 16 * 20 * 12 } else { 0 };
+    assert_eq!(counters.get(Counter::SmokeSwirled), cells);
+}
+
 #[test]
 fn solid_cells_stay_empty_and_still() {
-    let s = smoke(burning, AIR);
+    let s = smoke(burning, Air { swirl: 0.2, ..AIR });
     let mut simulation = Simulation::default();
     for steps in [1, 5, 20, 40, 80] {
         simulation.run(&Smoke { steps, ..s }, &mut Counters::default());

@@ -268,7 +268,8 @@ fn effects_do_what_their_formulas_say() {
                 Kind::Tube { base, glow, radius } => {
                     let [px, py] =
                         [(x, SIZE[0]), (y, SIZE[1])].map(|(p, n)| (2 * p + 1) as f64 / n as f64 - 1.0);
-                    let far = (px * px + py * py) / 2.0 / f64::from(radius).powi(2);
+                    let radius = f64::from(radius);
+                    let far = (px * px + py * py) / (2.0 * radius * radius);
                     v * (f64::from(base) + f64::from(glow) * (1.0 - far).max(0.0))
                 }
                 Kind::Cells { shade, colour } => {
