@@ -107,7 +107,7 @@ pub struct Counters {
     pub watch: Stopwatch,
 }
 
-// What builds without counting pay for it.
+// Nothing is counted, and nothing is carried along.
 #[cfg(not(any(feature = "counters", feature = "split", feature = "study")))]
 const _: () = assert!(size_of::<Counters>() == 0);
 
