@@ -325,6 +325,37 @@ fn even_smoke_dims_as_beer_lambert_and_light_by_its_depth() {
 }
 
 #[test]
+fn thin_smoke_scatters_nearly_as_henyey_and_greenstein_say() {
+    // The sun is far along z. What comes through thin smoke is even but for the angle.
+    let sun = Light { position: Vec3::Z * 1e4, colour: Vec3::splat(1e8), kind: LightKind::Point };
+    let scene = Scene { lights: vec![sun], ..Default::default() };
+    let stage = Stage::new(&scene, &Quality::PRESETS[3].1, 8, 8);
+    for g in [0.0, 0.2, 0.45, 0.6, -0.4] {
+        let phase = [1.0, 1.55 * g - 0.55 * g * g * g, 0.0];
+        let s = made(Rules { extinction: 1e-3, phase, ..*smoke(full, Air::DEFAULT).rules });
+        let simulation = play(s, 20);
+        let mut shown = Vec::new();
+        let s = Smoke { steps: 20, ..s };
+        let volume = Volume::new(&s, &simulation, &mut shown, &mut Counters::default());
+        let light = |cos: f32| {
+            let direction = Vec3::new(0.0, (1.0 - cos * cos).sqrt(), cos);
+            // Through the same length of it, from the middle on.
+            let origin = V3::splat(Vec3::new(0.8, 1.0, 0.6) - direction * 2.0);
+            let rays = Rays8 { origin, direction: V3::splat(direction) };
+            let start = volume.march(&stage, &rays, splat(1.8), 0.05, &mut Counters::default()).1;
+            let (_, all) = volume.march(&stage, &rays, splat(2.2), 0.05, &mut Counters::default());
+            f64::from(all.x.as_array()[0] - start.x.as_array()[0])
+        };
+        let angles = (0..64).map(|i| (2.0 * i as f32 + 1.0) / 64.0 - 1.0);
+        let pairs = angles.map(|cos| (light(cos), f64::from(crate::kernels::henyey_greenstein(cos, g))));
+        let pairs: Vec<(f64, f64)> = pairs.collect();
+        let sums = pairs.iter().fold((0.0, 0.0), |sum, p| (sum.0 + p.0, sum.1 + p.1));
+        let apart = pairs.iter().map(|p| (p.0 / sums.0 - p.1 / sums.1).abs()).sum::<f64>() / 2.0;
+        assert!(apart < 0.06, "g = {g}: {:.1} % of the light goes elsewhere", 100.0 * apart);
+    }
+}
+
+#[test]
 fn steps_change_little_an_early_end_less_and_lanes_nothing_at_all() {
     let s = made(Rules { extinction: 9.0, ambient: Vec3::ONE, ..*smoke(burning, AIR).rules });
     let s = Smoke { steps: 30, ..s };
