@@ -306,20 +306,20 @@ fn a_frame_alone_is_the_frame_come_to_by_playing_and_by_seeking() {
     let mut played = Renderer::default();
     let mut at_300 = None;
     let mut steps = 0;
-    for frame in 0..=301 {
+    for frame in 0..=300 {
         let picture = draw(&mut played, frame);
         steps += u64::from(played.counters.get(Counter::SmokeCells) > 0);
-        if [150, 299, 300, 301].contains(&frame) {
+        if [150, 300].contains(&frame) {
             let command = golden::replay("smoke", frame, "low", SIZE);
             assert_eq!(alone(frame).compare(&picture), None, "frame {frame}; replay: {command}");
         }
         at_300 = if frame == 300 { Some(picture) } else { at_300 };
     }
-    assert_eq!(steps, 151, "one step every other frame");
+    assert_eq!(steps, 150, "one step every other frame");
     // Backwards, forwards, over other parts, at other sizes.
     let mut sought = Renderer::default();
     let mut other = vec![0; 32 * 18];
-    for frame in [300, 299, 120, 300, 1000, 300, 0, 300, 301, 300] {
+    for frame in [300, 299, 120, 300, 420, 300, 0, 300, 301, 300] {
         sought.frame(&(show::PARTS[0].scene)(frame), frame, (32, 18), &quality, &mut other);
         let picture = draw(&mut sought, frame);
         let kept = if frame == 300 { at_300.as_ref() } else { None };
