@@ -10,17 +10,17 @@ use super::args::Options;
 use super::sound;
 use super::stage::{Picture, Stage};
 use super::text::{Text, join};
+use super::time::{MILLISECOND, now};
 use super::x11::{Screen, no_display};
 use super::{fit, loader};
 use minifb::{InputCallback, Key, Scale, Window, WindowOptions};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
-use std::time::{Duration, Instant};
 
 /// Preparations shorter than this show no bar.
-const UNNOTICED: Duration = Duration::from_millis(300);
+const UNNOTICED: u64 = 300 * MILLISECOND;
 /// The picture is presented again after this time, because X11 forgets what was covered.
-const STALE: Duration = Duration::from_millis(100);
+const STALE: u64 = 100 * MILLISECOND;
 
 struct Keys(Arc<AtomicBool>);
 
@@ -42,7 +42,7 @@ pub fn play(options: &Options) -> Result<(), Text> {
     window.set_input_callback(Box::new(Keys(escape.clone())));
     window.set_cursor_visibility(false);
 
-    let start = Instant::now();
+    let start = now();
     let stage: &'static Stage = Box::leak(Box::new(Stage::new(options, window.get_size())));
     #[cfg(all(feature = "sound", target_os = "linux"))]
     if !options.mute {
@@ -57,12 +57,12 @@ pub fn play(options: &Options) -> Result<(), Text> {
         let size = window.get_size();
         let fresh = stage.take(&mut picture);
         let waiting = picture.pixels.is_empty();
-        let due = fresh || shown.0 != size || shown.1.elapsed() > STALE;
-        if !due || waiting && start.elapsed() < UNNOTICED {
+        let due = fresh || shown.0 != size || now() - shown.1 > STALE;
+        if !due || waiting && now() - start < UNNOTICED {
             window.update();
             continue;
         }
-        shown = (size, Instant::now());
+        shown = (size, now());
         stage.set_room(size);
         let pixels = if picture.size == size {
             &picture.pixels
