@@ -35,3 +35,17 @@ pub fn now() -> u64 {
 pub fn sleep(nanoseconds: u64) {
     std::thread::sleep(std::time::Duration::from_nanos(nanoseconds));
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn waiting_takes_at_least_as_long_as_asked() {
+        for nanoseconds in [0, 1, 999, 1000, MILLISECOND, 3 * MILLISECOND + 1] {
+            let before = now();
+            sleep(nanoseconds);
+            assert!(now() - before >= nanoseconds, "{nanoseconds}");
+        }
+    }
+}

@@ -14,7 +14,7 @@ use super::time::{MILLISECOND, now};
 use super::x11::{Screen, no_display};
 use super::{fit, loader};
 use minifb::{InputCallback, Key, Scale, Window, WindowOptions};
-use std::sync::Arc;
+use std::mem::ManuallyDrop;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 /// Preparations shorter than this show no bar.
@@ -22,7 +22,7 @@ const UNNOTICED: u64 = 300 * MILLISECOND;
 /// The picture is presented again after this time, because X11 forgets what was covered.
 const STALE: u64 = 100 * MILLISECOND;
 
-struct Keys(Arc<AtomicBool>);
+struct Keys(&'static AtomicBool);
 
 impl InputCallback for Keys {
     fn add_char(&mut self, _: u32) {}
@@ -37,9 +37,10 @@ impl InputCallback for Keys {
 /// Plays the show until it ends or the user ends it.
 pub fn play(options: &Options) -> Result<(), Text> {
     let screen = Screen::find()?;
-    let mut window = open(options, &screen)?;
-    let escape = Arc::new(AtomicBool::new(false));
-    window.set_input_callback(Box::new(Keys(escape.clone())));
+    // The program ends with it: neither it nor what the rendering job holds is given back.
+    let mut window = ManuallyDrop::new(open(options, &screen)?);
+    let escape: &AtomicBool = Box::leak(Box::default());
+    window.set_input_callback(Box::new(Keys(escape)));
     window.set_cursor_visibility(false);
 
     let start = now();
