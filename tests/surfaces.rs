@@ -1,4 +1,5 @@
-//! Surfaces under GGX as whole pictures: relief in mirrors, rough mirrors, bounces of diffuse light.
+//! Surfaces as whole pictures: what mirrors show and how far, and under GGX relief in mirrors, rough
+//! mirrors, bounces of diffuse light.
 mod support;
 
 use luc_core::counters::Counter;
@@ -271,4 +272,103 @@ fn drawn_rays_are_the_same_on_any_number_of_threads() {
     for threads in [2, 5] {
         assert!(one == on(threads), "{threads} threads");
     }
+}
+
+/// Two mirrors that shine a little, face to face; the eye looks at one of them.
+fn hall(f0: f32) -> Scene {
+    let mirror = Material {
+        diffuse: 0.0,
+        f0: Vec3::splat(f0),
+        reflection: 1.0,
+        emission: Vec3::splat(0.25),
+        ..Material::default()
+    };
+    let wall = |z: f32| Plane {
+        point: Vec3::Z * z,
+        normal: Vec3::Z * -z.signum(),
+        reach: f32::INFINITY,
+        material: 0,
+    };
+    Scene {
+        camera: Camera { position: Vec3::ZERO, target: Vec3::new(0.1, 0.05, -1.0), roll: 0.0, fov: 0.3 },
+        planes: vec![wall(-2.0), wall(2.0)],
+        materials: vec![mirror],
+        ..Scene::default()
+    }
+}
+
+#[test]
+fn chains_of_mirrors_end_at_their_depth_or_where_they_add_too_little() {
+    let f0 = 0.5;
+    let scene = hall(f0);
+    let size = (64, 36);
+    let pixels = u64::from(size.0 * size.1);
+    let asked = |depth, cutoff| Quality { depth, cutoff, edge_samples: 0, ..preset("high").every_pixel() };
+    let reflected = |quality: &Quality| render(&scene, size, quality).1.counters.get(Counter::ReflectedRays);
+    for depth in 0..12 {
+        assert_eq!(reflected(&asked(depth, 0.0)), pixels * u64::from(depth), "to a depth of {depth}");
+    }
+    // Rays are followed while 0.5^k, at this angle, is over the cut-off.
+    for (k, cutoff) in (1..8).map(|k| (k, 0.75 / (1 << k) as f32)) {
+        assert_eq!(reflected(&asked(12, cutoff)), pixels * k, "over {cutoff}");
+    }
+    // What is cut off is at most the cut-off times what is seen there, the whole series.
+    let (_, whole) = light(&scene, &asked(30, 0.0));
+    for cutoff in [0.3, 0.1, 0.02, 0.001] {
+        let (_, cut) = light(&scene, &asked(30, cutoff));
+        for (c, w) in cut.iter().zip(&whole) {
+            let lost = w.x - c.x;
+            assert!(lost > 0.0 && lost <= cutoff * 0.25 / (1.0 - 1.05 * f0), "{lost} over {cutoff}");
+        }
+    }
+}
+
+#[test]
+fn mirrors_show_shining_rectangles_which_the_eye_does_not_see() {
+    let (radiance, f0) = (Vec3::new(8.0, 4.0, 2.0), Vec3::new(0.9, 0.6, 0.3));
+    let centre = Vec3::new(0.0, 3.0, -3.0);
+    let emitter = Emitter { centre, u: Vec3::X, v: Vec3::Z, half: [1.0, 0.5], radiance };
+    assert!(emitter.normal().y < 0.0, "it shines down");
+    let floor = Plane { point: Vec3::ZERO, normal: Vec3::Y, reach: f32::INFINITY, material: 0 };
+    let mirror = Material { diffuse: 0.0, f0, reflection: 1.0, ..Material::default() };
+    // Straight above the middle of the mirrored rectangle, so that the angle is that of normal incidence.
+    let position = Vec3::new(0.0, 1.0, -3.0);
+    let seen = |target: Vec3| {
+        let camera = Camera { position, target, roll: 0.0, fov: 1e-3 };
+        let scene = Scene {
+            camera,
+            planes: vec![floor],
+            materials: vec![mirror],
+            emitters: vec![emitter],
+            ..Scene::default()
+        };
+        light(&scene, &preset("high").every_pixel()).0
+    };
+    let mirrored = |x: f32, z: f32| seen(Vec3::new(centre.x + x, -centre.y, centre.z + z));
+    let middle = mirrored(0.0, 0.0);
+    assert!((middle - radiance * f0).abs().max_element() < 1e-4, "{middle}");
+    for (x, z) in [(1.0, 0.0), (-1.0, 0.0), (0.0, 0.5), (0.0, -0.5), (1.0, 0.5), (-1.0, -0.5)] {
+        assert!(mirrored(0.99 * x, 0.99 * z).x > 7.0, "within its edge at {x} {z}");
+        assert_eq!(mirrored(1.01 * x, 1.01 * z), Vec3::ZERO, "beyond its edge at {x} {z}");
+    }
+    assert_eq!(seen(centre), Vec3::ZERO, "looked at straight");
+}
+
+#[test]
+fn discs_are_seen_only_where_nothing_else_is() {
+    let shine = |x| Material { diffuse: 0.0, emission: Vec3::splat(x), ..Material::default() };
+    let disc = Disc { centre: Vec3::new(0.0, 0.0, -3.0), radius: 2.0, low: Vec3::ONE, high: Vec3::ONE };
+    let scene = |spheres| Scene {
+        camera: Camera { position: Vec3::ZERO, target: Vec3::NEG_Z, roll: 0.0, fov: 0.1 },
+        background: Background { discs: vec![disc], ..Background::default() },
+        spheres,
+        materials: vec![shine(0.5)],
+        ..Scene::default()
+    };
+    let ball = |z: f32| vec![Sphere { centre: Vec3::Z * z, radius: 1.0, material: 0, blend: 0.0 }];
+    let middle = |spheres| light(&scene(spheres), &preset("high")).0;
+    assert_eq!(middle(vec![]), Vec3::ONE);
+    assert_eq!(middle(ball(-9.0)), Vec3::splat(0.5), "a ball behind the disc");
+    assert_eq!(middle(ball(-2.0)), Vec3::splat(0.5), "a ball before the disc");
+    assert_eq!(middle(ball(9.0)), Vec3::ONE, "a ball behind the eye");
 }

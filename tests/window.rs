@@ -99,6 +99,30 @@ fn escape_does_not_wait_for_a_frame_that_takes_long() {
     player.ends("Esc during a long frame");
 }
 
+/// A first frame of several seconds, so that however fast the machine is there is something to wait for.
+#[test]
+fn a_bar_is_seen_until_the_first_frame_is_there() {
+    const SIZE: (usize, usize) = (1280, 720);
+    const LIT: u32 = 0xe8_b0_60;
+    const DIM: u32 = 0x38_2b_1a;
+    let screen = Screen::new(SIZE.0 as u32, SIZE.1 as u32);
+    let mut player = screen.play(&["--scene", "facets", "--quality", "reference", "--threads", "1"]);
+    let (width, pixels) = player.look_for(2);
+    assert_eq!((width, pixels.len()), (SIZE.0, SIZE.0 * SIZE.1));
+    // Half as wide as the window, and three rows thick.
+    let (left, right, rows) = (320, 960, 358..361);
+    let done = pixels.iter().filter(|&&p| p == LIT).count() / rows.len();
+    assert!(done == 0 || done == 320, "none or one of two steps, not {done} px");
+    for (i, &pixel) in pixels.iter().enumerate() {
+        let (x, y) = (i % SIZE.0, i / SIZE.0);
+        let on_bar = rows.contains(&y) && (left..right).contains(&x);
+        let expected = if !on_bar { 0 } else { [DIM, LIT][usize::from(x < left + done)] };
+        assert_eq!(pixel, expected, "at ({x}, {y}) with {done} px done");
+    }
+    player.tap_escape();
+    player.ends("Esc before the first frame");
+}
+
 #[test]
 fn playing_once_ends_by_itself_after_the_last_frame() {
     let screen = Screen::new(640, 480);

@@ -143,16 +143,21 @@ impl Player<'_> {
         (width, pixels.collect())
     }
 
-    /// Looks until the window shows something.
+    /// Looks until the window shows something of the show.
     pub fn look_at_show(&self) -> (usize, Vec<u32>) {
+        // The loader's bar has two colours and black.
+        self.look_for(4)
+    }
+
+    /// Looks until the window shows at least so many colours.
+    pub fn look_for(&self, colours: usize) -> (usize, Vec<u32>) {
         let start = Instant::now();
         loop {
             let (width, pixels) = self.look();
-            // The loader's bar has two colours and black.
-            let mut colours = pixels.clone();
-            colours.sort_unstable();
-            colours.dedup();
-            if colours.len() > 3 {
+            let mut found = pixels.clone();
+            found.sort_unstable();
+            found.dedup();
+            if found.len() >= colours {
                 return (width, pixels);
             }
             assert!(start.elapsed() < Duration::from_secs(20), "the window stays blank");

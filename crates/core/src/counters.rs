@@ -102,6 +102,10 @@ pub struct Counters {
     pub watch: Stopwatch,
 }
 
+// Nothing is counted, and nothing is carried along.
+#[cfg(not(any(feature = "counters", feature = "split", feature = "study")))]
+const _: () = assert!(size_of::<Counters>() == 0);
+
 // Arrays over 32 have no default of their own.
 #[cfg(feature = "counters")]
 impl Default for Counters {

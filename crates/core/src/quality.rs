@@ -228,3 +228,52 @@ impl Quality {
         block.clamp(4, 32)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cells_of_4_to_32_px_grow_with_the_picture() {
+        for (name, quality) in Quality::PRESETS {
+            let sizes = [1, 360, 720, 1080, 1440, 2160, 4320].map(|height| quality.cell(height));
+            if quality.block == 1 {
+                assert_eq!(sizes, [1; 7], "{name} traces every pixel");
+                continue;
+            }
+            assert!(sizes.iter().all(|s| s.is_power_of_two() && (4..=32).contains(s)), "{name}: {sizes:?}");
+            assert!(sizes.is_sorted() && sizes[2] < sizes[5], "{name} doesn't grow: {sizes:?}");
+        }
+        assert_eq!(Quality::PRESETS[Quality::DEFAULT].1.every_pixel().cell(2160), 1);
+    }
+
+    #[test]
+    fn the_ladder_has_six_rungs_and_no_knob_turns_back() {
+        let names = Quality::PRESETS.map(|(name, _)| name);
+        assert_eq!(names, ["draft", "low", "medium", "high", "ultra", "reference"]);
+        for ((_, worse), (name, better)) in Quality::PRESETS.iter().zip(&Quality::PRESETS[1..]) {
+            let up = |knob: fn(&Quality) -> f32| knob(better) >= knob(worse);
+            let down = |knob: fn(&Quality) -> f32| knob(better) <= knob(worse);
+            let finer = [
+                down(|q| q.block as f32),
+                down(|q| q.tolerance),
+                down(|q| q.smallest as f32),
+                better.rung >= worse.rung,
+                up(|q| q.edge_samples as f32),
+                up(|q| q.samples as f32),
+                up(|q| q.depth as f32),
+                up(|q| q.scatter as f32),
+                up(|q| q.rough as f32),
+                down(|q| q.cutoff),
+                down(|q| q.epsilon),
+                up(|q| q.steps as f32),
+                down(|q| q.smoke),
+                up(|q| q.shadow_samples as f32),
+            ];
+            assert!(finer.iter().all(|&is| is), "{name}: {finer:?}");
+            assert_ne!(better, worse, "{name}");
+            assert_eq!(Quality::named(name), Some(*better));
+        }
+        assert_eq!(Quality::named("best"), None);
+    }
+}

@@ -161,3 +161,63 @@ fn overlay(tile: &Tile, (x, y): (usize, usize), colour: Vec3) -> Vec3 {
     let rim = size >= 8 && (x % size == 0 || y % size == 0);
     (colour + (paint - colour) * 0.45) * if rim { 0.7 } else { 1.0 }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::quality::Quality;
+    use crate::scene::{Grade, Scene};
+
+    /// Side of the pictures.
+    const SIDE: usize = 64;
+
+    /// A picture of one display value, as bytes of its green channel.
+    fn printed(grade: Grade, n: u64, value: f32) -> Vec<u32> {
+        let scene = Scene { grade, ..Scene::default() };
+        let stage = Stage::new(&scene, &Quality::PRESETS[Quality::DEFAULT].1, SIDE as u32, SIDE as u32);
+        let mut pixels = vec![!0; SIDE * SIDE];
+        for (k, eight) in pixels.chunks_mut(8).enumerate() {
+            print(&stage, V3::splat(Vec3::splat(value)), (8 * k % SIDE, 8 * k / SIDE), n, eight);
+        }
+        assert!(pixels.iter().all(|p| p >> 16 == p & 255 && p >> 8 & 255 == p & 255), "grey, and 0 on top");
+        pixels.iter().map(|p| p >> 8 & 255).collect()
+    }
+
+    #[test]
+    fn without_dither_every_byte_comes_back() {
+        let plain = Grade { grain: 0.0, ..Grade::DEFAULT };
+        for byte in 0..=255 {
+            assert_eq!(printed(plain, 7, byte as f32 / 255.0), [byte; SIDE * SIDE]);
+        }
+        let ends = [-1.0, f32::NAN, 2.0, f32::INFINITY].map(|value| printed(plain, 7, value)[0]);
+        assert_eq!(ends, [0, 0, 255, 255]);
+    }
+
+    #[test]
+    fn dither_keeps_the_mean_moves_by_one_step_and_changes_with_the_frame() {
+        let plain = Grade { vignette: 0.0, ..Grade::DEFAULT };
+        for k in 0..40 {
+            let value = 20.0 + 0.1 * k as f32;
+            let found = printed(plain, k, value / 255.0);
+            let (low, high) = (value.floor() as u32, value.ceil() as u32);
+            assert!(found.iter().all(|byte| (low..=high).contains(byte)), "{value}");
+            // Of 4096 throws the mean is right to 0.5 / 64, and this is four times that.
+            let mean = found.iter().sum::<u32>() as f32 / (SIDE * SIDE) as f32;
+            assert!((mean - value).abs() < 0.032, "{mean} for {value}");
+        }
+        assert_eq!(printed(plain, 3, 0.5 / 255.0), printed(plain, 3, 0.5 / 255.0));
+        assert_ne!(printed(plain, 3, 0.5 / 255.0), printed(plain, 4, 0.5 / 255.0));
+    }
+
+    #[test]
+    fn the_vignette_is_its_formula_up_to_a_step() {
+        let dark = Grade { vignette: 1.0, grain: 0.0, ..Grade::DEFAULT };
+        for (i, byte) in printed(dark, 0, 1.0).into_iter().enumerate() {
+            let [x, y] = [i % SIDE, i / SIDE].map(|at| (2 * at + 1) as f64 / SIDE as f64 - 1.0);
+            #[allow(clippy::disallowed_methods, reason = "an oracle in f64 that never reaches a pixel")]
+            let fall = ((x * x + y * y) * 0.5).powf(1.2);
+            let off = f64::from(byte) / 255.0 - (1.0 - fall);
+            assert!(off.abs() <= 0.004 + 0.5 / 255.0, "{byte} at ({x}, {y}): {off}");
+        }
+    }
+}
