@@ -8,9 +8,9 @@ use super::ggx::ggx;
 use super::lamps::Lamp;
 use crate::counters::{Counter, Counters};
 use crate::features;
-use crate::math::Vec3;
 use crate::math::lanes::{Bound, F, V3, splat};
 use crate::math::lanes_fn::{exp, pow};
+use crate::math::{Vec3, whole};
 use crate::render::Stage;
 use crate::scene::{Channel, Scene, Shading};
 use crate::study::Phase;
@@ -298,7 +298,7 @@ pub fn tinted(stage: &Stage, lamp: &Lamp, code: F) -> V3 {
         return colour;
     }
     let lanes = code.to_array().map(|c| {
-        let bits = c as u32;
+        let bits = whole(c);
         let tints = stage.tints.iter().enumerate();
         tints.fold(Vec3::ONE, |sum, (i, &tint)| if bits >> i & 1 == 1 { sum * tint } else { sum })
     });
