@@ -51,6 +51,7 @@ counters! {
     EmitterTests "tests of emitters",
     DiscTests "tests of discs",
     Glows "glows in the sky",
+    ColouredShadows "shadow rays against glass",
     LightEvaluations "light evaluations",
     Phong "Phong highlights",
     CookTorrance "Cook-Torrance highlights",

@@ -78,6 +78,7 @@ impl Plan {
             (Counter::Glows, !scene.background.glows.is_empty()),
             (Counter::ShadowRays, lit && lamps_shade),
             (Counter::SoftShadowRays, shows && soft),
+            (Counter::ColouredShadows, lit && lamps_shade && materials().any(|m| m.is_transparent())),
             (Counter::LightEvaluations, lit),
             (Counter::Phong, shines && scene.shading == Shading::Phong),
             (Counter::CookTorrance, shines && scene.shading == Shading::CookTorrance),

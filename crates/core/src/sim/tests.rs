@@ -1,6 +1,7 @@
 //! Laws of the motion and the light of smoke: bounded and finite however long, nothing out of nothing,
 //! less divergence with each sweep, the same on any number of threads and by any way to a step.
 
+use super::light::OPAQUE;
 use super::*;
 use crate::counters::Counter;
 use crate::math::Vec3;
@@ -393,6 +394,43 @@ fn steps_change_little_an_early_end_less_and_lanes_nothing_at_all() {
             }
         }
         assert!(count > 300, "{count} of 3200 rays cross thick smoke");
+    });
+}
+
+#[test]
+fn a_ray_that_ends_early_leaves_out_no_more_than_its_share() {
+    let air = Air { density: 0.9, ..AIR };
+    let s = made(Rules { extinction: 80.0, ambient: Vec3::ONE, gain: 0.0, ..*smoke(burning, air).rules });
+    let s = Smoke { steps: 30, ..s };
+    seen(&s, |volume, stage| {
+        let mut counters = Counters::default();
+        let mut march = |rays: &Rays8, end: f32| volume.march(stage, rays, splat(end), 0.02, &mut counters);
+        let mut ended = 0;
+        for case in 0..30 {
+            let random = &mut Random::new(4_000 + case);
+            let target = Vec3::new(1.0, 0.5, 0.6) + random.direction() * 0.3;
+            let direction = random.direction();
+            let at = |t: f32| Rays8 {
+                origin: V3::splat(target + direction * (t - 2.0)),
+                direction: V3::splat(direction),
+            };
+            let (through, light) = march(&at(0.0), 4.0);
+            let (through, light) = (through.as_array()[0], light.x.as_array()[0]);
+            // In pieces too short to end early, what each adds seen through those before it.
+            let (mut rest, mut sum) = (1.0, 0.0);
+            for k in 0..80 {
+                let (t, l) = march(&at(0.05 * k as f32), 0.05);
+                assert!(t.as_array()[0] > OPAQUE, "case {case}: a piece of its own ends early");
+                sum += rest * l.x.as_array()[0];
+                rest *= t.as_array()[0];
+            }
+            // Its own light is 1 where smoke is thickest.
+            let room = OPAQUE + 4e-3;
+            assert!((sum - light).abs() < room, "case {case}: {light}, not {sum}");
+            assert!((rest - through).abs() < room && through >= 0.0, "case {case}: {through}, not {rest}");
+            ended += u32::from(through < OPAQUE);
+        }
+        assert!(ended > 8, "{ended} of 30 rays end early");
     });
 }
 

@@ -1,7 +1,7 @@
 //! Whether light reaches a point: blocked by an opaque shape, coloured by transparent ones.
 
 use super::{Hits, NONE, Rays8, Shape};
-use crate::counters::Counters;
+use crate::counters::{Counter, Counters};
 use crate::math::lanes::{F, splat};
 use crate::quality::Quality;
 use crate::scene::{Field, Scene};
@@ -41,6 +41,7 @@ pub fn occlusion(
         counters.add(shape.counter(), 8);
         let span = shape.span(rays, F::ONE, quality, counters);
         if bit > 0.0 {
+            counters.add(Counter::ColouredShadows, 8);
             let crossed = span.exit.simd_gt(zero) & span.enter.simd_lt(end);
             code += crossed & splat(bit);
         } else {
