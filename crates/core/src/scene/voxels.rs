@@ -18,7 +18,8 @@ pub struct Voxels {
     pub cell: f32,
     /// Material of cells of value 1; those of the next value have the next, and so on.
     pub material: usize,
-    /// Width of the dark grooves between cells, as a share of a cell's side.
+    /// Width of the dark grooves between cells, as a share of a cell's side; 0 is still a line as wide as a pixel,
+    /// less than 0 none.
     pub groove: f32,
     /// How much the colours of cells differ, 0 to 1.
     pub variation: f32,
