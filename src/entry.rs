@@ -9,10 +9,10 @@
 //! even Rust's own start code, once inlined into `main`, has AVX instructions in it.
 //!
 //! The size build (`cfg(luc_size)`, made by `cargo pack`) has neither glibc's start code nor
-//! Rust's, which cost 1 to 2 kB: the system jumps to `_start`, which hands argument count,
-//! arguments and environment to the functions of `.init_array` as glibc would, calls
-//! [`player::run`](crate::player::run) with the arguments, and leaves by C's `exit`. Nothing
-//! flushes Rust's standard output on that way: the player writes without its buffer.
+//! Rust's, which cost 1 to 2 kB: the system jumps to `_start`, which calls
+//! [`player::run`](crate::player::run) with the arguments, and leaves by C's `exit`. Rust's standard library
+//! is not told of the arguments, which nobody asks it for, and nothing flushes its standard output: the
+//! player writes without its buffer.
 
 #![cfg(all(target_arch = "x86_64", unix))]
 
@@ -23,7 +23,7 @@ const NEEDS_AVX2: &str = "luc: needs a processor with AVX2, and this one has non
 
 unsafe extern "C" {
     fn write(file: i32, bytes: *const u8, length: usize) -> isize;
-    fn _exit(code: i32) -> !;
+    safe fn exit(code: i32) -> !;
 }
 
 #[cfg(not(luc_size))]
@@ -55,7 +55,7 @@ extern "C" fn require_avx2() {
         // SAFETY: the pointer and the length are those of one string.
         unsafe {
             write(2, NEEDS_AVX2.as_ptr(), NEEDS_AVX2.len());
-            _exit(2)
+            exit(2)
         }
     }
 }
@@ -64,8 +64,9 @@ extern "C" fn require_avx2() {
 mod size {
     //! Start of the size build: Linux on x86-64.
 
-    use super::require_avx2;
+    use super::{exit, require_avx2};
     use crate::player;
+    use std::alloc::{GlobalAlloc, Layout};
     use std::ffi::{CStr, OsStr};
     use std::os::unix::ffi::OsStrExt;
 
@@ -80,16 +81,31 @@ mod size {
         start = sym start,
     );
 
-    /// A function of `.init_array`.
-    type Initializer = unsafe extern "C" fn(usize, *const *const i8, *const *const i8);
-
     unsafe extern "C" {
-        // Where the linker puts the first and past the last initializer.
-        static __init_array_start: [Initializer; 0];
-        static __init_array_end: [Initializer; 0];
+        fn aligned_alloc(alignment: usize, size: usize) -> *mut u8;
+        fn free(memory: *mut u8);
         fn signal(number: i32, action: usize) -> usize;
-        fn exit(code: i32) -> !;
     }
+
+    /// The C library's memory, by one function for any alignment: the standard library's own way there
+    /// takes four.
+    struct Memory;
+
+    // SAFETY: `aligned_alloc` gives memory of that size and alignment, and `free` takes all that it gave.
+    unsafe impl GlobalAlloc for Memory {
+        unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+            // SAFETY: an alignment is a power of two.
+            unsafe { aligned_alloc(layout.align(), layout.size()) }
+        }
+
+        unsafe fn dealloc(&self, memory: *mut u8, _: Layout) {
+            // SAFETY: the caller has it from `alloc`.
+            unsafe { free(memory) }
+        }
+    }
+
+    #[global_allocator]
+    static MEMORY: Memory = Memory;
 
     /// A write to a closed pipe is an error to report, as Rust's own start code has it.
     const SIGPIPE: i32 = 13;
@@ -98,16 +114,9 @@ mod size {
     unsafe extern "C" fn start(stack: *const usize) -> ! {
         require_avx2();
         // SAFETY: the stack holds the count, that many arguments, a null, the environment, a null.
-        // The initializers are called once, before anything else of the program runs.
         unsafe {
             let count = *stack;
             let arguments = stack.add(1).cast::<*const i8>();
-            let environment = arguments.add(count + 1);
-            let mut initializer = (&raw const __init_array_start).cast::<Initializer>();
-            while initializer < (&raw const __init_array_end).cast::<Initializer>() {
-                (*initializer)(count, arguments, environment);
-                initializer = initializer.add(1);
-            }
             signal(SIGPIPE, SIG_IGN);
             let text = |i: usize| OsStr::from_bytes(CStr::from_ptr(*arguments.add(i)).to_bytes());
             exit(player::run(&(1..count).map(text).collect::<Vec<_>>()))

@@ -254,6 +254,9 @@ fn paint(before: u32, after: u32) -> Option<Kind> {
     }
 }
 
+/// Size of the pictures under the overlay: whole cells, whose pixels outside the picture would be counted too.
+const OVERLAID: (u32, u32) = (384, 216);
+
 #[test]
 fn the_overlay_shows_how_each_pixel_was_got() {
     // Without additional samples of edges, which take pixels back out of filled cells.
@@ -262,15 +265,15 @@ fn the_overlay_shows_how_each_pixel_was_got() {
         for frame in [11, 700, 1400] {
             let mut scene = plain(part, frame);
             (scene.grade.grain, scene.grade.vignette) = (0.0, 0.0);
-            let (before, counters) = render(&scene, frame, SIZE, &quality);
+            let (before, counters) = render(&scene, frame, OVERLAID, &quality);
             scene.overlay = 1.0;
-            let (after, same) = render(&scene, frame, SIZE, &quality);
+            let (after, same) = render(&scene, frame, OVERLAID, &quality);
             // Steps of smoke are taken once.
             let own = [Counter::OverlayPixels, Counter::SmokeCells];
             for (counter, words) in Counter::ALL.into_iter().filter(|c| !own.contains(&c.0)) {
                 assert_eq!(counters.get(counter), same.get(counter), "the overlay costs no {words}");
             }
-            let (kinds, _) = records(&scene, SIZE, &quality);
+            let (kinds, _) = records(&scene, OVERLAID, &quality);
 
             let count = |kind: Kind| kinds.iter().filter(|&&k| k == kind).count() as u64;
             let name = part.name;
@@ -279,7 +282,7 @@ fn the_overlay_shows_how_each_pixel_was_got() {
             assert_eq!(count(Kind::Traced), counters.get(Counter::Traced), "{name} {frame}");
             assert!(kinds.iter().any(|&k| k != Kind::Traced), "{name} {frame}: nothing was saved");
             for (i, &kind) in kinds.iter().enumerate() {
-                let (x, y) = (i % SIZE.0 as usize, i / SIZE.0 as usize);
+                let (x, y) = (i % OVERLAID.0 as usize, i / OVERLAID.0 as usize);
                 let at = format!("{name} {frame} at ({x}, {y}): {:06x} to {:06x}", before[i], after[i]);
                 match kind {
                     Kind::Traced | Kind::Smoothed => assert_eq!(before[i], after[i], "{at}, traced"),
@@ -296,15 +299,15 @@ fn the_overlay_wipes_from_the_left_and_spares_smoothed_edges() {
     for part in show::PARTS {
         let mut scene = plain(part, 333);
         (scene.grade.grain, scene.grade.vignette) = (0.0, 0.0);
-        let (before, counters) = render(&scene, 333, SIZE, &quality);
-        let (kinds, _) = records(&scene, SIZE, &quality);
+        let (before, counters) = render(&scene, 333, OVERLAID, &quality);
+        let (kinds, _) = records(&scene, OVERLAID, &quality);
         for overlay in [0.5, 1.0] {
             scene.overlay = overlay;
-            let (after, _) = render(&scene, 333, SIZE, &quality);
-            let wipe = (overlay * SIZE.0 as f32) as usize;
+            let (after, _) = render(&scene, 333, OVERLAID, &quality);
+            let wipe = (overlay * OVERLAID.0 as f32) as usize;
             let mut painted = 0;
             for (i, &kind) in kinds.iter().enumerate() {
-                let (x, y) = (i % SIZE.0 as usize, i / SIZE.0 as usize);
+                let (x, y) = (i % OVERLAID.0 as usize, i / OVERLAID.0 as usize);
                 if before[i] != after[i] {
                     painted += 1;
                     let at = format!("{} at ({x}, {y})", part.name);

@@ -2,6 +2,7 @@
 //! behind; every frame is the same picture in every format.
 mod support;
 
+use luc::show;
 use luc_core::quality::Quality;
 use luc_core::render::View;
 use std::fs::{read, write};
@@ -9,7 +10,7 @@ use std::io::Read;
 use std::path::Path;
 use std::process::{Output, Stdio};
 use support::picture::psnr;
-use support::{command, frame, frame_of, names, parts, run};
+use support::{command, frame, frame_of, names, run};
 use tempfile::tempdir;
 
 /// One line on standard error that contains `part`, nothing on standard output, code 2.
@@ -198,7 +199,7 @@ fn without_a_name_the_file_is_named_after_the_frame() {
 #[test]
 fn a_scene_counts_its_own_frames_and_starts_over() {
     let dir = tempdir().unwrap();
-    for (index, part) in parts() {
+    for (index, part) in show::PARTS.iter().enumerate() {
         for n in [0, 100, part.frames - 1, part.frames, u64::MAX] {
             // Smoke takes all its steps up to a late frame; such are among the fingerprints.
             let late = n % part.frames > 100;

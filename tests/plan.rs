@@ -11,21 +11,21 @@ use luc_core::scene::{Effect, Kind, Light, LightKind, Material, Plane, Scene, Sp
 
 const SIZE: (u32, u32) = (320, 180);
 
+/// What a plan names as an option that follows from the picture, not from the scene: cells of one colour, cells
+/// that need the exact surface, and places where there is smoke already.
+const PERHAPS: [Counter; 3] = [Counter::Filled, Counter::KnownSurfaces, Counter::SmokeMarched];
+
 /// Renders a scene and compares every counter with the plan. `steps` is how far the renderer's smoke has
 /// come before.
-fn check(renderer: &mut Renderer, steps: u32, name: &str, scene: &Scene, quality: &Quality) {
+///
+/// Returns which of [`PERHAPS`] were at work.
+fn check(renderer: &mut Renderer, steps: u32, name: &str, scene: &Scene, quality: &Quality) -> [bool; 3] {
     let mut pixels = vec![0; (SIZE.0 * SIZE.1) as usize];
     renderer.frame(scene, 0, SIZE, quality, &mut pixels);
     let plan = Plan::of(scene, quality);
     for (counter, words) in Counter::ALL {
-        // How many pixels a filled cell spares follows from the picture, not from the scene.
-        if counter == Counter::Filled {
-            continue;
-        }
         let count = renderer.counters.get(counter);
-        // So does whether any cell needs the exact surface, where that is an option, and whether there
-        // is smoke yet.
-        if [Counter::KnownSurfaces, Counter::SmokeMarched].contains(&counter) && plan.names(counter) {
+        if PERHAPS.contains(&counter) && plan.names(counter) {
             continue;
         }
         // Steps that the renderer remembers aren't taken again.
@@ -39,6 +39,7 @@ fn check(renderer: &mut Renderer, steps: u32, name: &str, scene: &Scene, quality
             "{name}: {words}: {count}; replay: --frame with that number"
         );
     }
+    PERHAPS.map(|counter| renderer.counters.get(counter) > 0)
 }
 
 #[test]
@@ -46,25 +47,28 @@ fn every_part_does_what_its_plan_names_and_nothing_else() {
     let mut start = 0;
     // One for all, so that smoke comes from frame to frame, not from the start to each.
     let (mut renderer, mut steps) = (Renderer::default(), 0);
+    let mut worked = [false; 3];
     for part in show::PARTS {
         for local in (0..part.frames).step_by(173).chain([part.frames - 1]) {
             let scene = (part.scene)(local);
             for (name, quality) in Quality::PRESETS {
                 // The slow end of the ladder only now and then.
                 if quality.samples == 0 || local == 0 {
-                    check(
+                    let found = check(
                         &mut renderer,
                         steps,
                         &format!("{} {local} (frame {}) {name}", part.name, start + local),
                         &scene,
                         &quality,
                     );
+                    worked.iter_mut().zip(found).for_each(|(worked, found)| *worked |= found);
                     steps = scene.smoke.map_or(steps, |smoke| smoke.steps);
                 }
             }
         }
         start += part.frames;
     }
+    assert_eq!(worked, [true; 3], "{PERHAPS:?} at work in some frame");
 }
 
 #[test]
@@ -97,6 +101,7 @@ fn each_effect_runs_as_often_as_it_is_called_for() {
         Kind::Lighten(-0.5),
         Kind::Tube { base: 0.5, glow: 0.5, radius: 1.0 },
         Kind::Grain(0.1),
+        Kind::Cells { shade: 0.5, colour },
     ];
     let quality = Quality::named("low").unwrap();
     let (mut renderer, mut pixels) = (Renderer::default(), vec![0; 96 * 54]);
@@ -142,6 +147,28 @@ fn what_a_preset_cannot_show_is_a_named_warning() {
     assert!(warnings(&mirror, &Quality::named("high").unwrap()).is_empty());
     let shallow = Quality { depth: 1, ..Quality::named("draft").unwrap() };
     assert_eq!(warnings(&mirror, &shallow), ["glass needs a depth of two or more"]);
+    // Smoke is there, and the quality doesn't march.
+    let part = show::PARTS.iter().find(|part| part.name == "smoke").expect("a part of the show");
+    let mut smoke = (part.scene)(700);
+    let off = Quality { smoke: 0.0, ..Quality::named("high").unwrap() };
+    assert_eq!(warnings(&smoke, &off), ["smoke needs steps longer than 0 to be seen"]);
+    check(&mut Renderer::default(), 0, "smoke unseen", &smoke, &off);
+    smoke.lights[0].position.x += 1.0;
+    let words = "the lamps of the smoke are not where the first lights are";
+    assert_eq!(warnings(&smoke, &Quality::named("high").unwrap()), [words]);
+}
+
+#[test]
+fn every_preset_can_show_every_part() {
+    for part in show::PARTS {
+        for frame in (0..part.frames).step_by(60) {
+            for (name, quality) in Quality::PRESETS {
+                let scene = (part.scene)(frame);
+                let none: [&str; 0] = [];
+                assert_eq!(warnings(&scene, &quality), none, "{} {frame} at {name}", part.name);
+            }
+        }
+    }
 }
 
 /// The features that the manifest gives this build, from the lines for luc-core and for parts that the

@@ -9,7 +9,7 @@ use luc_core::synth::stream::{Stream, Tune};
 use luc_core::synth::{BAR, RATE, meter, pcm};
 use std::sync::OnceLock;
 use support::sound::{has_sound, samples_of_wav};
-use support::{command, names, parts, run};
+use support::{command, names, run};
 use tempfile::tempdir;
 
 type Samples = Vec<[f32; 2]>;
@@ -188,7 +188,7 @@ fn the_executable_writes_what_the_library_plays() {
     let output = run(dir.path(), &["--wav", "a.wav"]);
     assert_eq!((output.status.code(), &*output.stderr, &*output.stdout), (Some(0), &b""[..], &b""[..]));
     let file = std::fs::read(dir.path().join("a.wav")).unwrap();
-    let sections: Vec<_> = parts().map(|(_, part)| part.section).collect();
+    let sections: Vec<_> = show::PARTS.iter().map(|part| part.section).collect();
     let played: Vec<[i16; 2]> = round(sections.leak()).iter().map(|s| s.map(pcm)).collect();
     assert!(samples_of_wav(&file) == played, "the whole loop");
     assert_eq!(names(dir.path()), ["a.wav"]);

@@ -411,7 +411,25 @@ mod tests {
             (&["--frame", "1", "--fullscreen"], "--fullscreen is for playing"),
         ] {
             let sentence = read(args).unwrap_err();
+            // Builds without averages say so, whatever follows.
+            let missing = !AVERAGE && args.contains(&"--average");
+            let part = if missing { "--average is left out of this small build" } else { part };
             assert!(sentence.contains(part), "{args:?}: {sentence}");
+        }
+    }
+
+    #[test]
+    fn what_a_build_lacks_is_refused_and_not_offered() {
+        let help = String::from_utf8(help()).unwrap();
+        for (name, value, is_there) in [("--average", "4", AVERAGE), ("--view", "normal", VIEWS)] {
+            let found = read(&["--frame", "1", name, value]);
+            assert_eq!(help.contains(name), is_there, "{help}");
+            if is_there {
+                assert!(found.is_ok(), "{found:?}");
+            } else {
+                let sentence = format!("{name} is left out of this small build; the ordinary one has it");
+                assert_eq!(found, Err(sentence));
+            }
         }
     }
 }

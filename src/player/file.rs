@@ -4,20 +4,21 @@
 //! neither a full disk nor an error leaves half a picture, and an older picture stays until the new one
 //! is complete. Devices and pipes cannot be replaced and are written directly.
 
-use super::text::{Text, ascii, join, number, quoted};
+use super::system::{self, File};
+use super::text::{Text, join, number, quoted};
 use std::ffi::OsStr;
-use std::fs::{File, OpenOptions, remove_file, rename};
-use std::io::{Error, Write};
-use std::path::{Path, PathBuf};
+
+/// A file's name as the system takes it, with a zero at its end.
+type Name = Text;
 
 /// A place that can be written, as far as can be known before writing.
 pub enum Target {
     /// Standard output.
     Standard,
     /// A device or pipe, already open.
-    Device(PathBuf, File),
+    Device(Name, File),
     /// An ordinary file, there or not.
-    Ordinary(PathBuf),
+    Ordinary(Name),
 }
 
 impl Target {
@@ -26,20 +27,20 @@ impl Target {
         if name == "-" {
             return Ok(Target::Standard);
         }
-        let path = PathBuf::from(name);
-        match OpenOptions::new().write(true).open(&path) {
+        let name = join(&[name.as_encoded_bytes(), b"\0"]);
+        match system::open(&name) {
             // A link stays a link: what it points to is replaced.
-            Ok(file) if file.metadata().is_ok_and(|m| m.is_file()) => {
-                Ok(Target::Ordinary(path.canonicalize().unwrap_or(path)))
+            Ok(file) if system::is_ordinary(&file) => {
+                Ok(Target::Ordinary(system::resolve(&name).unwrap_or(name)))
             }
-            Ok(file) => Ok(Target::Device(path, file)),
-            Err(e) if e.raw_os_error() == Some(NOT_FOUND) => {
-                let trial = aside(&path);
-                create(&trial).map_err(|e| cannot(&path, e))?;
-                let _ = remove_file(trial);
-                Ok(Target::Ordinary(path))
+            Ok(file) => Ok(Target::Device(name, file)),
+            Err(NOT_FOUND) => {
+                let trial = aside(&name);
+                system::create(&trial).map_err(|e| cannot(&name, e))?;
+                system::remove(&trial);
+                Ok(Target::Ordinary(name))
             }
-            Err(e) => Err(cannot(&path, e)),
+            Err(e) => Err(cannot(&name, e)),
         }
     }
 
@@ -47,18 +48,19 @@ impl Target {
     pub fn write(self, bytes: &[u8]) -> Result<(), Text> {
         match self {
             Target::Standard => print(bytes),
-            Target::Device(path, mut file) => file.write_all(bytes).map_err(|e| cannot(&path, e)),
-            Target::Ordinary(path) => {
-                let beside = aside(&path);
-                create(&beside)
-                    .and_then(|mut file| {
-                        let written = file.write_all(bytes).and_then(|()| rename(&beside, &path));
+            Target::Device(name, file) => system::write(&file, bytes).map_err(|e| cannot(&name, e)),
+            Target::Ordinary(name) => {
+                let beside = aside(&name);
+                system::create(&beside)
+                    .and_then(|file| {
+                        let written =
+                            system::write(&file, bytes).and_then(|()| system::rename(&beside, &name));
                         if written.is_err() {
-                            let _ = remove_file(&beside);
+                            system::remove(&beside);
                         }
                         written
                     })
-                    .map_err(|e| cannot(&path, e))
+                    .map_err(|e| cannot(&name, e))
             }
         }
     }
@@ -66,44 +68,18 @@ impl Target {
 
 /// Writes to standard output and makes sure that it got there.
 pub fn print(bytes: &[u8]) -> Result<(), Text> {
-    standard(1, bytes).map_err(|e| join(&[b"cannot write standard output: ", &reason(&e)]))
-}
-
-/// Writes to the standard stream of this number, 1 output or 2 errors. The standard library's own
-/// way there, a buffer of lines behind a lock, would cost the packed file a kilobyte.
-#[cfg(unix)]
-pub fn standard(stream: i32, bytes: &[u8]) -> Result<(), Error> {
-    use std::os::fd::FromRawFd;
-    // SAFETY: the stream belongs to the whole program, and is never closed here.
-    let file = std::mem::ManuallyDrop::new(unsafe { File::from_raw_fd(stream) });
-    (&*file).write_all(bytes)
-}
-
-#[cfg(not(unix))]
-pub fn standard(stream: i32, bytes: &[u8]) -> Result<(), Error> {
-    match stream {
-        1 => std::io::stdout().write_all(bytes).and_then(|()| std::io::stdout().flush()),
-        _ => std::io::stderr().write_all(bytes),
-    }
+    system::write_standard(1, bytes).map_err(|e| join(&[b"cannot write standard output: ", &reason(e)]))
 }
 
 /// The name to write under until the file is complete. It is put together without taking the path
 /// apart, which would cost more than all else here.
-fn aside(path: &Path) -> PathBuf {
-    let mut name = path.as_os_str().to_owned();
-    let ending = join(&[b".luc-", &number(std::process::id().into())]);
-    name.push(ascii(&ending));
-    name.into()
+fn aside(name: &Name) -> Name {
+    join(&[&name[..name.len() - 1], b".luc-", &number(std::process::id().into()), b"\0"])
 }
 
-/// Only a new file: nothing that exists may be overwritten by the unfinished one.
-fn create(path: &Path) -> Result<File, Error> {
-    OpenOptions::new().write(true).create_new(true).open(path)
-}
-
-fn cannot(path: &Path, e: Error) -> Text {
-    let name = quoted(path.as_os_str().as_encoded_bytes());
-    join(&[b"cannot write ", &name, b": ", &reason(&e), b"; choose another place"])
+fn cannot(name: &Name, code: i32) -> Text {
+    let name = quoted(&name[..name.len() - 1]);
+    join(&[b"cannot write ", &name, b": ", &reason(code), b"; choose another place"])
 }
 
 /// Numbers of errors, each 128 up, and the reason in words, then a zero; the standard library's own words
@@ -116,8 +92,7 @@ const REASONS: &[u8] = b"\x82\x94no such directory\0\x81\x8dpermission denied\0\
 /// What the system calls a file that isn't there.
 const NOT_FOUND: i32 = 2;
 
-fn reason(e: &Error) -> Text {
-    let code = e.raw_os_error().unwrap_or(0);
+fn reason(code: i32) -> Text {
     let mut words = Text::new();
     let mut found = false;
     for &byte in REASONS {
@@ -133,7 +108,7 @@ fn reason(e: &Error) -> Text {
 #[cfg(all(test, target_os = "linux"))]
 mod tests {
     use super::*;
-    use std::io::ErrorKind;
+    use std::io::{Error, ErrorKind};
 
     #[test]
     fn the_reasons_are_those_of_the_standard_library() {
@@ -150,7 +125,7 @@ mod tests {
                 ErrorKind::InvalidInput => "the name is too long or not allowed".into(),
                 _ => format!("the system refused with error {code}"),
             };
-            assert_eq!(String::from_utf8(reason(&e)).unwrap(), expected, "error {code}");
+            assert_eq!(String::from_utf8(reason(code)).unwrap(), expected, "error {code}");
         }
     }
 }

@@ -5,8 +5,6 @@
 //! doubles the wait before the next one, so a machine between two levels settles instead of flickering
 //! between them.
 
-use std::time::Duration;
-
 /// The longest a frame may take: a sixtieth of a second less what presenting needs.
 const BUDGET: u32 = 15_000; // microseconds
 /// A level about twice as dear still fits if the frame takes less than this.
@@ -40,9 +38,9 @@ impl Live {
         self.level
     }
 
-    /// Takes in how long the last frame took to render.
-    pub fn measured(&mut self, time: Duration) {
-        let time = time.as_micros().min(u32::MAX.into()) as u32;
+    /// Takes in how many nanoseconds the last frame took to render.
+    pub fn measured(&mut self, time: u64) {
+        let time = (time / 1000).min(u32::MAX.into()) as u32;
         self.late =
             if time > BUDGET { self.late + (time / BUDGET).min(3) } else { self.late.saturating_sub(1) };
         self.roomy = if time < ROOMY { self.roomy + 1 } else { 0 };
@@ -73,6 +71,7 @@ impl Live {
 
 #[cfg(test)]
 mod tests {
+    use super::super::time::MILLISECOND;
     use super::*;
 
     const TOP: usize = 4;
@@ -81,7 +80,7 @@ mod tests {
     fn play(live: &mut Live, frames: usize, costs: [u64; TOP + 1]) -> Vec<usize> {
         (0..frames)
             .map(|_| {
-                live.measured(Duration::from_millis(costs[live.level()]));
+                live.measured(costs[live.level()] * MILLISECOND);
                 live.level()
             })
             .collect()
@@ -111,7 +110,7 @@ mod tests {
     fn one_late_frame_among_timely_ones_changes_nothing() {
         let mut live = Live::new(2, TOP);
         for i in 0..3000 {
-            live.measured(Duration::from_millis(if i % 20 == 0 { 500 } else { 10 }));
+            live.measured(MILLISECOND * if i % 20 == 0 { 500 } else { 10 });
             assert_eq!(live.level(), 2, "frame {i}");
         }
     }
@@ -120,7 +119,7 @@ mod tests {
     fn late_every_other_frame_is_not_held() {
         let mut live = Live::new(2, TOP);
         for i in 0..60 {
-            live.measured(Duration::from_millis(if i % 2 == 0 { 31 } else { 14 }));
+            live.measured(MILLISECOND * if i % 2 == 0 { 31 } else { 14 });
         }
         assert!(live.level() < 2);
     }
@@ -148,8 +147,8 @@ mod tests {
     fn absurd_times_do_not_overflow() {
         let mut live = Live::new(0, 0);
         for _ in 0..100_000 {
-            live.measured(Duration::MAX);
-            live.measured(Duration::ZERO);
+            live.measured(u64::MAX);
+            live.measured(0);
         }
         assert_eq!(live.level(), 0);
     }

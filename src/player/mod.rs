@@ -20,7 +20,9 @@ mod snapshot;
 #[cfg(all(feature = "sound", target_os = "linux"))]
 mod sound;
 mod stage;
+mod system;
 mod text;
+mod time;
 #[cfg(feature = "sound")]
 mod wav;
 mod window;
@@ -69,7 +71,7 @@ fn perform(options: &Options) -> Result<(), Text> {
 fn complain(sentence: &[u8]) {
     let line = text::join(&[b"luc: ", sentence, b"\n"]);
     // There is nobody left to tell when standard error is closed.
-    let _ = file::standard(2, &line);
+    let _ = system::write_standard(2, &line);
 }
 
 /// Starts the threads that render. Left to itself, rayon would start them on first use and panic when

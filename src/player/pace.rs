@@ -4,9 +4,9 @@
 //! was heard, or would have been, if all had been played at the pace of now. Small corrections
 //! come in slowly, because cards tell their position in steps.
 
+use super::time::{SECOND, now};
 use luc_core::synth::RATE;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
-use std::time::{Duration, Instant};
 
 /// Corrections beyond this come at once: the card stood still.
 const STEP: i64 = 40_000_000; // nanoseconds
@@ -16,9 +16,7 @@ const UNKNOWN: u64 = 1 << 63;
 
 /// The show's time, shared by those who tell it and those who ask.
 pub struct Pace {
-    base: Instant,
-    /// When the show's time was 0, nanoseconds after `base`, modulo 2⁶⁴: a card that is fast comes
-    /// before it.
+    /// When the show's time was 0, by [`now`].
     origin: AtomicU64,
     /// Nobody will tell.
     silent: AtomicBool,
@@ -27,7 +25,7 @@ pub struct Pace {
 impl Pace {
     /// Time has not begun, and nobody tells it.
     pub fn new() -> Self {
-        Pace { base: Instant::now(), origin: AtomicU64::new(UNKNOWN), silent: AtomicBool::new(true) }
+        Pace { origin: AtomicU64::new(UNKNOWN), silent: AtomicBool::new(true) }
     }
 
     /// Whether nobody tells the time from now on.
@@ -35,32 +33,27 @@ impl Pace {
         self.silent.store(silent, Relaxed);
     }
 
-    fn now(&self) -> u64 {
-        self.base.elapsed().as_nanos() as u64
-    }
-
-    /// Time since the show began; none until the card has begun. Without sound it begins with the first
+    /// Nanoseconds since the show began; none until the card has begun. Without sound it begins with the first
     /// question.
-    pub fn elapsed(&self) -> Option<Duration> {
-        let now = self.now();
+    pub fn elapsed(&self) -> Option<u64> {
+        let now = now();
         if self.silent.load(Relaxed) {
             let _ = self.origin.compare_exchange(UNKNOWN, now, Relaxed, Relaxed);
         }
         let origin = self.origin.load(Relaxed);
         let passed = now.wrapping_sub(origin) as i64;
-        (origin != UNKNOWN).then(|| Duration::from_nanos(passed.max(0) as u64))
+        (origin != UNKNOWN).then_some(passed.max(0) as u64)
     }
 
     /// Takes in that `heard` samples have been heard by now.
     pub fn hear(&self, heard: u64) {
         let origin = self.origin.load(Relaxed);
-        self.origin.store(follow(origin, self.now(), heard), Relaxed);
+        self.origin.store(follow(origin, now(), heard), Relaxed);
     }
 }
 
 /// The new origin after `heard` samples at `now`.
 fn follow(origin: u64, now: u64, heard: u64) -> u64 {
-    const SECOND: u64 = 1_000_000_000;
     let rate = u64::from(RATE);
     let measured = now.wrapping_sub(heard / rate * SECOND + heard % rate * SECOND / rate);
     let off = measured.wrapping_sub(origin) as i64;
@@ -76,7 +69,6 @@ mod tests {
     use super::*;
 
     const FRAME: i64 = 1_000_000_000 / 60;
-    const SECOND: u64 = 1_000_000_000;
 
     #[test]
     fn silence_begins_with_the_first_question_and_sound_with_the_card() {
@@ -84,9 +76,9 @@ mod tests {
         pace.set_silent(false);
         assert_eq!(pace.elapsed(), None);
         pace.hear(0);
-        assert!(pace.elapsed().unwrap() < Duration::from_secs(1));
+        assert!(pace.elapsed().unwrap() < SECOND);
         let pace = Pace::new();
-        assert!(pace.elapsed().unwrap() < Duration::from_millis(100));
+        assert!(pace.elapsed().unwrap() < SECOND / 10);
     }
 
     #[test]

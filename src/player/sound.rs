@@ -5,10 +5,10 @@ use super::alsa::{Device, start_thread};
 use super::complain;
 use super::stage::Stage;
 use super::text::join;
+use super::time::{MILLISECOND, now, sleep};
 use luc::show;
 use luc_core::synth::stream::Stream;
 use luc_core::synth::{RATE, pcm};
-use std::time::{Duration, Instant};
 
 /// Samples written at once; 12 ms.
 const BLOCK: usize = 512;
@@ -41,18 +41,18 @@ fn play(stage: &Stage) -> Result<(), &'static [u8]> {
     let (sections, first, count) = stage.stretch();
     let mut stream = Stream::new(show::tune(sections), (first * show::SAMPLES) as u32);
     while !stage.is_prepared() {
-        std::thread::sleep(Duration::from_millis(1));
+        sleep(MILLISECOND);
     }
     let total = count.map_or(u64::MAX, |frames| frames * show::SAMPLES);
-    let begun = Instant::now();
+    let begun = now();
     let mut written = 0;
     while written < total {
         // No card is a thousandth too fast; a file takes what it is given.
-        let passed = begun.elapsed().as_nanos() as u64 / 1000 * u64::from(RATE) / 999_000;
+        let passed = (now() - begun) / 1000 * u64::from(RATE) / 999_000;
         let heard = (written - device.delay().min(written)).min(passed);
         stage.pace.hear(heard);
         if written - heard > AHEAD {
-            std::thread::sleep(Duration::from_millis(5));
+            sleep(5 * MILLISECOND);
             continue;
         }
         let mut block = [[0.0; 2]; BLOCK];

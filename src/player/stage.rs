@@ -10,6 +10,7 @@ use super::clock::{Clock, until_next};
 use super::fit::{self, Rect};
 use super::live::Live;
 use super::pace::Pace;
+use super::time::{MILLISECOND, now, sleep};
 use luc::show;
 use luc_core::quality::Quality;
 use luc_core::render::Renderer;
@@ -17,7 +18,6 @@ use std::mem::{ManuallyDrop, swap};
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU32, AtomicUsize, Ordering::Relaxed};
 use std::sync::{Mutex, MutexGuard, PoisonError};
-use std::time::{Duration, Instant};
 
 /// Levels of live quality: a preset, and on how many twelfths of the picture's sides it draws. Each costs at
 /// most about twice as much as the one before it. A preset on fewer pixels shows more than the one under it on
@@ -139,19 +139,19 @@ impl Stage {
         let mut last = None;
         loop {
             let Some(elapsed) = self.pace.elapsed() else {
-                std::thread::sleep(Duration::from_millis(1));
+                sleep(MILLISECOND);
                 continue;
             };
             let Some(n) = self.clock.frame(elapsed) else { break };
             if last == Some(n) {
-                std::thread::sleep(until_next(elapsed));
+                sleep(until_next(elapsed));
                 continue;
             }
             last = Some(n);
-            let began = Instant::now();
+            let began = now();
             let level = self.quality.map_or(LEVELS[live.level()], |preset| (preset, 12));
             self.draw(&mut renderer, n, level, &mut picture);
-            live.measured(began.elapsed());
+            live.measured(now() - began);
             let mut newest = self.newest();
             newest.0 = true;
             swap(&mut newest.1, &mut picture);

@@ -10,19 +10,19 @@ use super::args::Options;
 use super::sound;
 use super::stage::{Picture, Stage};
 use super::text::{Text, join};
+use super::time::{MILLISECOND, now};
 use super::x11::{Screen, no_display};
 use super::{fit, loader};
 use minifb::{InputCallback, Key, Scale, Window, WindowOptions};
-use std::sync::Arc;
+use std::mem::ManuallyDrop;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
-use std::time::{Duration, Instant};
 
 /// Preparations shorter than this show no bar.
-const UNNOTICED: Duration = Duration::from_millis(300);
+const UNNOTICED: u64 = 300 * MILLISECOND;
 /// The picture is presented again after this time, because X11 forgets what was covered.
-const STALE: Duration = Duration::from_millis(100);
+const STALE: u64 = 100 * MILLISECOND;
 
-struct Keys(Arc<AtomicBool>);
+struct Keys(&'static AtomicBool);
 
 impl InputCallback for Keys {
     fn add_char(&mut self, _: u32) {}
@@ -37,12 +37,13 @@ impl InputCallback for Keys {
 /// Plays the show until it ends or the user ends it.
 pub fn play(options: &Options) -> Result<(), Text> {
     let screen = Screen::find()?;
-    let mut window = open(options, &screen)?;
-    let escape = Arc::new(AtomicBool::new(false));
-    window.set_input_callback(Box::new(Keys(escape.clone())));
+    // The program ends with it: neither it nor what the rendering job holds is given back.
+    let mut window = ManuallyDrop::new(open(options, &screen)?);
+    let escape: &AtomicBool = Box::leak(Box::default());
+    window.set_input_callback(Box::new(Keys(escape)));
     window.set_cursor_visibility(false);
 
-    let start = Instant::now();
+    let start = now();
     let stage: &'static Stage = Box::leak(Box::new(Stage::new(options, window.get_size())));
     #[cfg(all(feature = "sound", target_os = "linux"))]
     if !options.mute {
@@ -57,12 +58,12 @@ pub fn play(options: &Options) -> Result<(), Text> {
         let size = window.get_size();
         let fresh = stage.take(&mut picture);
         let waiting = picture.pixels.is_empty();
-        let due = fresh || shown.0 != size || shown.1.elapsed() > STALE;
-        if !due || waiting && start.elapsed() < UNNOTICED {
+        let due = fresh || shown.0 != size || now() - shown.1 > STALE;
+        if !due || waiting && now() - start < UNNOTICED {
             window.update();
             continue;
         }
-        shown = (size, Instant::now());
+        shown = (size, now());
         stage.set_room(size);
         let pixels = if picture.size == size {
             &picture.pixels

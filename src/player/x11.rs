@@ -38,7 +38,7 @@ mod system {
     use super::super::library::Library;
     use super::{Text, join, no_display};
     use std::ffi::{c_char, c_int, c_long, c_ulong, c_void};
-    use std::ptr::{null, null_mut};
+    use std::ptr::null;
 
     unsafe extern "C" {
         // The standard library's own exit would bring its buffered standard output along.
@@ -107,12 +107,10 @@ mod system {
             let Some(library) = Library::open(c"libX11.so.6") else {
                 return Err(join(&[b"no display: install libX11, or write a frame with --frame N"]));
             };
-            let mut screen = Screen { size: None, library, display: null_mut(), root: 0 };
-            screen.connect().ok_or_else(no_display)?;
-            Ok(screen)
+            Screen::connect(library).ok_or_else(no_display)
         }
 
-        fn connect(&mut self) -> Option<()> {
+        fn connect(library: Library) -> Option<Screen> {
             type Open = extern "C" fn(*const c_char) -> Display;
             type Root = extern "C" fn(Display) -> Id;
             type SetError = extern "C" fn(extern "C" fn(Display, *const ErrorEvent) -> c_int) -> *mut c_void;
@@ -121,18 +119,18 @@ mod system {
             const FIRST_SCREEN: c_int = 0;
             // SAFETY: the types are those in Xlib.h.
             unsafe {
-                self.display = self.library.function::<Open>(c"XOpenDisplay")?(null());
-                if self.display.is_null() {
+                let display = library.function::<Open>(c"XOpenDisplay")?(null());
+                if display.is_null() {
                     return None;
                 }
-                self.library.function::<SetError>(c"XSetErrorHandler")?(on_error);
-                self.library.function::<SetLost>(c"XSetIOErrorHandler")?(on_lost);
-                self.root = self.library.function::<Root>(c"XDefaultRootWindow")?(self.display);
-                let width = self.library.function::<Sides>(c"XDisplayWidth")?(self.display, FIRST_SCREEN);
-                let height = self.library.function::<Sides>(c"XDisplayHeight")?(self.display, FIRST_SCREEN);
-                self.size = (width > 0 && height > 0).then_some((width as usize, height as usize));
+                library.function::<SetError>(c"XSetErrorHandler")?(on_error);
+                library.function::<SetLost>(c"XSetIOErrorHandler")?(on_lost);
+                let root = library.function::<Root>(c"XDefaultRootWindow")?(display);
+                let width = library.function::<Sides>(c"XDisplayWidth")?(display, FIRST_SCREEN);
+                let height = library.function::<Sides>(c"XDisplayHeight")?(display, FIRST_SCREEN);
+                // At least 1 in the protocol.
+                Some(Screen { size: Some((width as usize, height as usize)), library, display, root })
             }
-            Some(())
         }
 
         /// Asks the window manager, if there is one, to give the window the whole of its monitor.

@@ -9,8 +9,8 @@ use super::score;
 use super::still::{Lamp, Still};
 use super::text::{Line, write};
 use glam::Vec2;
-use luc_core::math::Vec3;
 use luc_core::math::scalar::log2;
+use luc_core::math::{Vec3, whole};
 use luc_core::scene::*;
 use luc_core::synth::track::{Strikes, pulse, strikes};
 
@@ -114,7 +114,7 @@ fn titles(figures: &Figures) -> Scene {
     digits(&mut left, figures.rays[0]);
     digits(&mut right, figures.rays[1]);
     // -10 log10 of the error, in tenths before and after the point; nothing is better than 99.9.
-    let tenths = (-30.103 * log2(figures.error.max(1e-12))).clamp(0.0, 999.0) as u64;
+    let tenths = whole((-30.103 * log2(figures.error.max(1e-12))).clamp(0.0, 999.0)) as u64;
     sampled.copy_from_slice(CAPTIONS[1]);
     digits(&mut sampled[13..15], tenths / 10);
     digits(&mut sampled[16..17], tenths % 10);

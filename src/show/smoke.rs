@@ -89,6 +89,7 @@ static SMOKE: Rules = Rules {
         cool: 0.35,
         drag: 0.2,
         sweeps: 16,
+        ..Air::DEFAULT
     }
     .motion(0.08),
     lamps: [STILL.lights[0].position, STILL.lights[1].position],

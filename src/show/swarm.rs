@@ -9,7 +9,7 @@ use super::paint::{angle, degrees, graded, key, seconds, surface, swing, times, 
 use super::score;
 use super::still::{Lamp, Panel, Still};
 use luc_core::math::scalar::{cos, sin};
-use luc_core::math::{Mat3, Vec3, number};
+use luc_core::math::{Mat3, Vec3, number, whole};
 use luc_core::mesh::{Assembly, Instance, Mesh};
 use luc_core::scene::*;
 use luc_core::synth::track::{Strikes, pulse, strikes};
@@ -66,7 +66,7 @@ const BACK: [Key; 2] = [key(-2.0, 0.0, Ease::Smooth), key(16.0, 2.99, Ease::Step
 /// Point of a Catmull-Rom curve `x` corners behind its second one; it doesn't reach the first and the last.
 #[inline(never)]
 fn curve(corners: &[Vec3], x: f32) -> Vec3 {
-    let k = x as usize;
+    let k = whole(x);
     let f = x - k as f32;
     let [a, b, c, d] = [0, 1, 2, 3].map(|i| corners[k + i]);
     b + (c - a + (a * 2.0 - b * 5.0 + c * 4.0 - d + (b * 3.0 - a - c * 3.0 + d) * f) * f) * (0.5 * f)
@@ -132,7 +132,7 @@ fn pier(out: &mut Triangles, dice: &mut Dice) {
     let stands = dice.roll(0.0, 1.0) < 0.5;
     for shape in facets::RIBS {
         let left = if stands { 7.0 } else { dice.roll(1.0, 6.0) };
-        facets::rib(out, dice, shape, left as usize);
+        facets::rib(out, dice, shape, whole(left));
     }
 }
 

@@ -88,11 +88,6 @@ pub const FINGERPRINTS: [Frame; 36] = [
     ("swarm", 1199, "reference", (96, 54)),
 ];
 
-/// Whether a part is in the 64 kB file too.
-pub fn in_every_build(part: &str) -> bool {
-    part != "swarm"
-}
-
 /// Part and local frame of those whose value is kept for all builds, in `values.txt`.
 pub const VALUES: [(&str, u64); 20] = [
     ("blobs", 200),

@@ -32,16 +32,6 @@ pub fn command(dir: &Path) -> Command {
     command
 }
 
-/// The parts that the program under test has, with their places: a packed one may lack some.
-pub fn parts() -> impl Iterator<Item = (usize, &'static show::Part)> {
-    show::PARTS.iter().enumerate().filter(|(_, part)| is_there(part.name))
-}
-
-/// Whether the program under test has a part: others than the one of these tests may be packed.
-pub fn is_there(part: &str) -> bool {
-    std::env::var_os("LUC_BIN").is_none() || golden::in_every_build(part)
-}
-
 /// Names in `dir`, sorted.
 pub fn names(dir: &Path) -> Vec<String> {
     let entries = std::fs::read_dir(dir).unwrap();
@@ -50,16 +40,10 @@ pub fn names(dir: &Path) -> Vec<String> {
     names
 }
 
-/// Frame `n` of the show of the program under test, rendered in this process.
+/// Frame `n` of the show, rendered in this process.
 pub fn frame(n: u64, size: (u32, u32), quality: &str) -> Vec<u32> {
-    let mut local = n % parts().map(|(_, part)| part.frames).sum::<u64>();
-    for (index, part) in parts() {
-        if local < part.frames {
-            return frame_of(index, local, size, quality);
-        }
-        local -= part.frames;
-    }
-    unreachable!("frame {n} lies in a part")
+    let (part, local) = show::at(n);
+    frame_of(part, local, size, quality)
 }
 
 /// A frame of the part with this index, rendered in this process.

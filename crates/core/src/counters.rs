@@ -20,7 +20,7 @@ macro_rules! counters {
             /// Whether rays are counted, each once: those of rough mirrors are among the reflected ones.
             pub fn is_ray(self) -> bool {
                 use Counter::*;
-                matches!(self, PrimaryRays | ReflectedRays | RefractedRays | ScatterRays | ShadowRays)
+                matches!(self, PrimaryRays | ReflectedRays | RefractedRays | ScatterRays | ShadowRays | SmokeShadowRays)
             }
         }
     };
@@ -55,7 +55,10 @@ counters! {
     Phong "Phong highlights",
     CookTorrance "Cook-Torrance highlights",
     Ggx "GGX highlights",
-    FillLights "evaluations of fill lights",
+    PlainLights "aims at plain lights",
+    SpotLights "aims at spots",
+    RectangleLights "aims at shining rectangles",
+    FillLights "aims at fill lights",
     PointLights "evaluations of small lights",
     TextureLookups "texture lookups",
     Cells "cells of textures",
@@ -65,8 +68,10 @@ counters! {
     Bumps "bumps of normals",
     FogSegments "fog segments",
     SmokeCells "cells of smoke simulated",
+    SmokeSwirled "cells of smoke swirled",
     SmokeShown "cells of smoke shown",
     SmokeMarched "places in smoke marched through",
+    SmokeShadowRays "shadow rays from smoke",
     Beams "rays against beams",
     KnownSurfaces "known surfaces",
     Traced "pixels traced",

@@ -16,6 +16,10 @@ pub const FIELDS: bool = cfg!(feature = "fields");
 pub const VOXELS: bool = cfg!(feature = "voxels");
 /// Smoke, simulated.
 pub const SMOKE: bool = cfg!(feature = "smoke");
+/// Shadows of bodies on smoke.
+pub const SMOKE_SHADOWS: bool = cfg!(feature = "smoke-shadows");
+/// Whirls in smoke that are kept turning.
+pub const SWIRL: bool = cfg!(feature = "swirl");
 /// Ambient occlusion by fields.
 pub const FIELD_OCCLUSION: bool = cfg!(feature = "field-occlusion");
 /// Beams of light.
@@ -80,13 +84,15 @@ pub const EFFECT_TUBE: bool = cfg!(feature = "effect-tube");
 pub const EFFECT_GRAIN: bool = cfg!(feature = "effect-grain");
 
 /// Each feature with the counter that shows it at work.
-pub const ALL: [(&str, Counter); 32] = [
+pub const ALL: [(&str, Counter); 34] = [
     ("ggx", Counter::Ggx),
     ("bumps", Counter::Bumps),
     ("fields", Counter::FieldSteps),
     ("field-occlusion", Counter::FieldOcclusion),
     ("voxels", Counter::VoxelSteps),
     ("smoke", Counter::SmokeShown),
+    ("smoke-shadows", Counter::SmokeShadowRays),
+    ("swirl", Counter::SmokeSwirled),
     ("beams", Counter::Beams),
     ("endless", Counter::EndlessTests),
     ("bounces", Counter::ScatterRays),

@@ -5,10 +5,11 @@
 //! demands 0 of all that its plan doesn't name and more than 0 of all that it names.
 
 use crate::counters::Counter;
+use crate::features;
 use crate::mesh::Instance;
 use crate::quality::{Quality, Rung};
 use crate::sample::ROUGH;
-use crate::scene::{Field, Figures, LightKind, Material, Pattern, Scene, Shading};
+use crate::scene::{Field, Figures, LightKind, Material, Pattern, Rules, Scene, Shading};
 use crate::shade::MAX_POINTS;
 
 /// The machinery that a frame calls for, as the counters that it moves.
@@ -22,7 +23,8 @@ impl Plan {
         let lamps = !scene.lights.is_empty() || !scene.emitters.is_empty();
         let shows = materials().any(|m| m.diffuse > 0.0 || m.specular.max_element() > 0.0);
         let lit = lamps && shows;
-        let fills = scene.lights.iter().filter(|light| light.kind == LightKind::Fill).count();
+        let number = |kind| scene.lights.iter().filter(|light| light.kind == kind).count();
+        let (plain, fills) = (number(LightKind::Point), number(LightKind::Fill));
         let soft = scene.soft && quality.shadow_samples > 1 && !scene.emitters.is_empty();
         let points = !scene.points.is_empty() && shows;
         let shines = lit || points;
@@ -42,6 +44,9 @@ impl Plan {
         let bumps = materials().any(|m| m.texture.bump > 0.0);
         let textured = grain || bumps || !scene.voxels.is_empty();
         let pattern = |p| materials().any(|m| m.texture.is_visible() && m.texture.pattern == p);
+        let lamps_shade = fills < scene.lights.len() + scene.emitters.len();
+        let marches = scene.smoke.is_some() && quality.smoke > 0.0;
+        let shades = marches && lamps_shade && scene.smoke.is_some_and(|smoke| smoke.rules.shaded);
         let known = quality.rung == Rung::Surface || (quality.rung == Rung::Light && textured);
         let titles = scene.split.map(|split| {
             let (rays, height, error) = ([0; 2], 0.5625, 0.0);
@@ -71,12 +76,15 @@ impl Plan {
             (Counter::EmitterTests, (mirrors || glass) && !scene.emitters.is_empty()),
             (Counter::DiscTests, !scene.background.discs.is_empty()),
             (Counter::Glows, !scene.background.glows.is_empty()),
-            (Counter::ShadowRays, lit && fills < scene.lights.len() + scene.emitters.len()),
+            (Counter::ShadowRays, lit && lamps_shade),
             (Counter::SoftShadowRays, shows && soft),
             (Counter::LightEvaluations, lit),
             (Counter::Phong, shines && scene.shading == Shading::Phong),
             (Counter::CookTorrance, shines && scene.shading == Shading::CookTorrance),
             (Counter::Ggx, shines && scene.shading == Shading::Ggx),
+            (Counter::PlainLights, lit && plain > 0),
+            (Counter::SpotLights, lit && plain + fills < scene.lights.len()),
+            (Counter::RectangleLights, lit && !scene.emitters.is_empty()),
             (Counter::FillLights, lit && fills > 0),
             (Counter::PointLights, points),
             (Counter::TextureLookups, grain),
@@ -87,12 +95,18 @@ impl Plan {
             (Counter::Bumps, bumps),
             (Counter::FogSegments, scene.fog.is_some()),
             (Counter::SmokeCells, scene.smoke.is_some_and(|smoke| smoke.steps > 0)),
+            (
+                Counter::SmokeSwirled,
+                scene.smoke.is_some_and(|smoke| smoke.steps > 0 && smoke.rules.air.swirl() > 0.0),
+            ),
             (Counter::SmokeShown, scene.smoke.is_some()),
-            (Counter::SmokeMarched, scene.smoke.is_some()),
+            (Counter::SmokeMarched, marches),
+            (Counter::SmokeShadowRays, shades),
             (Counter::Beams, !scene.beams.is_empty() || titles().any(|scene| !scene.beams.is_empty())),
             (Counter::KnownSurfaces, adaptive && known && scene.has_known_surfaces()),
             (Counter::Traced, !adaptive || quality.smallest <= 1 || scene.split.is_some()),
             (Counter::Interpolated, adaptive),
+            (Counter::Filled, adaptive),
             (Counter::EdgeSamples, quality.edge_samples.max(quality.samples) > 0),
             (Counter::BloomPasses, scene.grade.bloom > 0.0 || titles().any(|scene| scene.grade.bloom > 0.0)),
             (Counter::Measured, adaptive && scene.split.is_some()),
@@ -128,9 +142,19 @@ pub fn warnings(scene: &Scene, quality: &Quality) -> Vec<&'static str> {
     let facets: usize = scene.meshes.instances().iter().map(|i| i.mesh().triangles().len()).sum();
     let clear = |i: &Instance| scene.materials[i.material].is_transparent();
     let spot = |kind: LightKind| matches!(kind, LightKind::Spot { inner, outer, .. } if inner <= outer);
+    let smoke = scene.smoke.map(|smoke| smoke.rules);
+    // Those that it has, as a part of its state, must be where the scene's lights are.
+    let stand = |rules: &Rules| scene.lights.iter().zip(rules.lamps).all(|(light, at)| light.position == at);
     let faults = [
         (quality.depth < 2 && materials().any(|m| m.is_transparent()), "glass needs a depth of two or more"),
         (quality.depth < 1 && materials().any(|m| m.reflection > 0.0), "mirrors need a depth of one or more"),
+        (quality.average > 1 && !features::AVERAGE, "averages are left out of this build"),
+        (smoke.is_some() && !features::SMOKE, "smoke is left out of this build"),
+        (smoke.is_some() && quality.smoke <= 0.0, "smoke needs steps longer than 0 to be seen"),
+        (
+            smoke.is_some_and(|rules| !stand(rules)),
+            "the lamps of the smoke are not where the first lights are",
+        ),
         (scene.lights.len() + scene.emitters.len() > 8, "lamps after the eighth cast no shadow"),
         (materials().filter(|m| m.is_transparent()).count() > 23, "glass after the 23rd casts no shadow"),
         (

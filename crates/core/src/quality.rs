@@ -43,7 +43,8 @@ pub struct Quality {
     pub epsilon: f32,
     /// Most steps of a ray that marches; one that is near a body by then has hit it.
     pub steps: u32,
-    /// Steps of the eye's rays through smoke, in its cells; rays of mirrors take thrice as long ones.
+    /// Steps of the eye's rays through smoke, in its cells; rays of mirrors take thrice as long ones. 0 leaves
+    /// out the sight of it.
     pub smoke: f32,
     /// Rays to points of each shining rectangle, where the scene has soft shadows; 1 for one to its
     /// middle. At least 1.

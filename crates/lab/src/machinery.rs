@@ -23,7 +23,7 @@ const ROUNDS: u64 = 9;
 /// Takes a machinery out of a scene.
 type Switch = (&'static str, fn(&mut Scene));
 
-const SWITCHES: [Switch; 12] = [
+const SWITCHES: [Switch; 17] = [
     ("smoke", |s| s.smoke = None),
     ("voxels", |s| (s.voxels, s.smoke) = (vec![], None)),
     ("fields", |s| s.fields.clear()),
@@ -36,13 +36,21 @@ const SWITCHES: [Switch; 12] = [
     ("beams", |s| s.beams.clear()),
     ("fog", |s| s.fog = None),
     ("bloom", |s| s.grade.bloom = 0.0),
+    ("glass", |s| s.materials.iter_mut().for_each(|m| m.transparency = 0.0)),
+    ("soft shadows", |s| s.soft = false),
+    ("sun and glows", |s| (s.background.discs, s.background.glows) = (vec![], vec![])),
+    ("effects", |s| s.effects.clear()),
+    ("split", |s| s.split = None),
 ];
 
+/// Those of them that a scene has only as it is shown, see [`Subject::bare`].
+const SHOWN: [&str; 2] = ["effects", "split"];
+
 /// Processor time of one thread for a frame with and without a machinery, and the counts that it takes away.
-fn switched(subject: &Subject, off: fn(&mut Scene), quality: &Quality) -> Option<([f64; 2], String)> {
+fn switched(subject: &Subject, (name, off): Switch, quality: &Quality) -> Option<([f64; 2], String)> {
     let first = subject.frames / 2 - subject.frames / 2 % 2;
     let scenes = |n: u64| {
-        let with = subject.bare(n);
+        let with = if SHOWN.contains(&name) { (subject.scene)(n) } else { subject.bare(n) };
         let mut without = with.clone();
         off(&mut without);
         [with, without]
@@ -160,8 +168,8 @@ pub fn run(args: &[String]) -> Result<(), String> {
         "| part | off | ms | without, ms | saved | what is no longer done |\n|---|---|---:|---:|---:|---|"
     );
     for subject in subjects {
-        for (name, off) in SWITCHES {
-            if let Some(([with, without], words)) = alone.install(|| switched(&subject, off, &quality)) {
+        for switch @ (name, _) in SWITCHES {
+            if let Some(([with, without], words)) = alone.install(|| switched(&subject, switch, &quality)) {
                 let saved = 100.0 * (1.0 - without / with);
                 println!("| {} | {name} | {with:.1} | {without:.1} | {saved:.0} % | {words} |", subject.name);
             }

@@ -4,7 +4,7 @@ use super::{Mesh, gather};
 use crate::bvh::{Bounds, Tree};
 use crate::features;
 use crate::math::lanes::{F, V3, splat};
-use crate::math::{Mat3, Vec3, number};
+use crate::math::{Mat3, Vec3, number, whole};
 use crate::trace::{Aim, Crossing, Rays8, Span};
 use std::sync::Arc;
 
@@ -108,7 +108,7 @@ impl Instance {
     #[cfg_attr(luc_size, optimize(size))]
     pub fn facets(&self, rays: &Rays8, index: F) -> Facets {
         let last = self.mesh.triangles.len() - 1;
-        let index = index.to_array().map(|i| (i as usize).min(last));
+        let index = index.to_array().map(|i| whole(i).min(last));
         let corners = gather(&self.mesh.triangles, index);
         let crossing = Aim::new(&self.local(rays)).cross(&corners).unwrap_or(Crossing::NONE);
         let weights = crossing.weights.map(|w| w / crossing.sum);

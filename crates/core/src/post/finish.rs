@@ -12,7 +12,7 @@ use super::picture::{Picture, ROWS};
 use crate::counters::{Counter, Counters};
 use crate::math::hash::hash2;
 use crate::math::lanes::{Bound, F, RAMP, V3, load, splat, splat_u};
-use crate::math::{Vec3, number};
+use crate::math::{Vec3, number, whole};
 use crate::render::Stage;
 use crate::sample::{Kind, TILE, Tile};
 use crate::scene::Stop;
@@ -63,7 +63,7 @@ impl Post {
         let glow = lit.and_then(|(stage, tiles)| self.bloom.glow(stage, tiles));
         counters.watch.enter(Phase::Finishing);
         counters.add(Counter::BloomPasses, glow.is_some() as usize);
-        let painted = (stage.scene.overlay * stage.width as f32) as usize;
+        let painted = whole(stage.scene.overlay * stage.width as f32);
         counters.add(Counter::OverlayPixels, painted * height);
         let picture = &self.chain.picture;
         parallel::each(pixels.chunks_mut(width * ROWS), |strip, rows| {
@@ -96,7 +96,7 @@ fn develop(stage: &Stage, tiles: &[Tile], glow: Option<&Picture>, (x, y): (usize
     }
     let mut colour = stage.display.map8(linear);
 
-    if x < (stage.scene.overlay * stage.width as f32) as usize {
+    if x < whole(stage.scene.overlay * stage.width as f32) {
         for lane in 0..8 {
             let painted = overlay(tile, (x % TILE + lane, y % TILE), colour.lane(lane));
             colour.set_lane(lane, painted);

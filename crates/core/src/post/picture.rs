@@ -1,7 +1,7 @@
 //! Pictures as planes of numbers, with their edges repeated, so that filters need not ask where they are.
 
 use crate::math::lanes::{Bound, F, RAMP, V3, load, pick, splat, splat_u};
-use crate::math::number;
+use crate::math::{number, whole};
 use crate::parallel;
 
 /// The seven taps of the blur: row six of Pascal's triangle.
@@ -91,7 +91,7 @@ impl Picture {
         F::new(columns.to_array().map(|column| {
             let column = column.clamp(0.0, number(self.width - 1));
             let left = column.floor();
-            let at = self.at(left as usize, down as usize) + colour * self.stride();
+            let at = self.at(whole(left), whole(down)) + colour * self.stride();
             let pair = |at: usize| {
                 let (a, b) = (clean(self.light[at]), clean(self.light[at + 1]));
                 a + (b - a) * (column - left)
@@ -154,8 +154,8 @@ impl Picture {
         let (columns, row) = (u.floor(), v.floor());
         let (fx, fy) = (u - columns, v - row);
         let first = columns.as_array()[0];
-        let start = self.at(first as usize, row.as_array()[0] as usize);
-        let offsets = (columns - splat(first)).trunc_int().cast_unsigned();
+        let start = self.at(whole(first), whole(row.as_array()[0]));
+        let offsets = (columns - splat(first)).fast_trunc_int().cast_unsigned();
         let colour = |k: usize| {
             let upper = &self.light[start + k * self.stride()..];
             let a = load(upper);

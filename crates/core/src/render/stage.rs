@@ -3,7 +3,7 @@
 use crate::cull::{Dop, FieldNode, Shaft, View, dops, field_nodes, shafts};
 use crate::features;
 use crate::math::lanes::{F, V3, splat};
-use crate::math::{Vec3, number};
+use crate::math::{Vec3, number, whole};
 use crate::post::Display;
 use crate::quality::{Quality, Rung};
 use crate::scene::Scene;
@@ -162,7 +162,7 @@ impl<'a> Stage<'a> {
     /// samples is not known without marching, nor that of a curved mesh from one facet: there it is
     /// the colour.
     pub fn rung(&self, id: f32) -> Rung {
-        let (shape, count) = (id.max(0.0) as usize >> 2, self.scene.shape_count());
+        let (shape, count) = (whole(id.max(0.0)) >> 2, self.scene.shape_count());
         let vague = if id < 0.0 {
             !self.scene.has_known_surfaces()
         } else if shape < count {

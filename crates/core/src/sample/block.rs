@@ -1,7 +1,7 @@
 //! What is known of traced samples, in blocks of eight: a packet's results are stored as vectors.
 
 use crate::math::lanes::{F, U, V3, splat};
-use crate::math::{Vec3, number};
+use crate::math::{Vec3, number, whole};
 use crate::quality::Rung;
 use crate::render::Stage;
 use crate::scene::{Material, Voxels};
@@ -112,9 +112,13 @@ impl<'a> Sample<'a> {
     pub fn node(self) -> f32 {
         self.block.node.as_array()[self.lane]
     }
+    /// The shape of the first hit.
+    fn shape<'s>(self, stage: &Stage<'s>) -> Option<Shape<'s>> {
+        (self.id() >= 0.0).then(|| stage.scene.shape(whole(self.id()) >> 2))
+    }
     /// What the first hit is made of, if its surface is known between samples: a field's is not.
     pub fn material<'s>(self, stage: &Stage<'s>) -> Option<&'s Material> {
-        let shape = (self.id() >= 0.0).then(|| stage.scene.shape(self.id() as usize >> 2))?;
+        let shape = self.shape(stage)?;
         if matches!(shape, Shape::Field(_)) {
             return None;
         }
@@ -122,12 +126,11 @@ impl<'a> Sample<'a> {
     }
     /// Whether the first hit is of a mesh with interpolated normals.
     pub fn is_of_smooth_mesh(self, stage: &Stage) -> bool {
-        let facet = (self.id() >= 0.0).then(|| stage.scene.shape(self.id() as usize >> 2));
-        matches!(facet, Some(Shape::Facet(instance, _)) if instance.mesh().is_smooth())
+        matches!(self.shape(stage), Some(Shape::Facet(instance, _)) if instance.mesh().is_smooth())
     }
     /// The voxels that the first hit is of.
     pub fn voxels<'s>(self, stage: &Stage<'s>) -> Option<&'s Voxels> {
-        match (self.id() >= 0.0).then(|| stage.scene.shape(self.id() as usize >> 2))? {
+        match self.shape(stage)? {
             Shape::Voxels(grid) => Some(grid),
             _ => None,
         }

@@ -11,7 +11,7 @@ use super::tile::{Kind, Record, TILE, Tile};
 use super::wave::soft;
 use crate::counters::{Counter, Counters};
 use crate::math::lanes::{F, LANE_INDEX, U, V3, splat, splat_u};
-use crate::math::{Vec3, number};
+use crate::math::{Vec3, number, whole};
 use crate::quality::Rung;
 use crate::render::Stage;
 use crate::scene::Channel;
@@ -145,7 +145,7 @@ fn meet(stage: &Stage, first: Sample, px: F, py: F, counters: &mut Counters) -> 
     if first.id() < 0.0 {
         return (rays, splat(f32::INFINITY));
     }
-    let (shape, part) = (first.id() as usize >> 2, first.id() as usize & 3);
+    let (shape, part) = (whole(first.id()) >> 2, whole(first.id()) & 3);
     if first.voxels(stage).is_some() {
         // All samples lie on one plane.
         let (way, d) = (V3::splat(first.point()) - rays.origin, rays.direction);

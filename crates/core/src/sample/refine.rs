@@ -19,7 +19,7 @@ use crate::counters::{Counter, Counters};
 use crate::cull::{Bounds, Region, may_cover, occluders};
 use crate::features;
 use crate::math::lanes::F;
-use crate::math::{Vec3, number};
+use crate::math::{Vec3, number, whole};
 use crate::quality::Rung;
 use crate::render::Stage;
 use crate::shade::MAX_LAMPS;
@@ -335,7 +335,7 @@ impl Surroundings {
         counters: &mut Counters,
     ) -> bool {
         let id = known.samples[0].id();
-        let own = if id >= 0.0 { id as usize >> 2 } else { usize::MAX };
+        let own = if id >= 0.0 { whole(id) >> 2 } else { usize::MAX };
         let half = number(cell.size) * 0.5;
         let middle = (number(corner.0 + cell.x) + half + 0.5, number(corner.1 + cell.y) + half + 0.5);
         let at = stage.on_screen(middle.0, middle.1);
@@ -399,10 +399,10 @@ impl Surroundings {
                 return true;
             }
             // A body that already colours the light of all samples is known to be there.
-            let crossed = known.samples[0].code(lamp) as u32;
+            let crossed = whole(known.samples[0].code(lamp));
             let may = occluders(stage.scene, shafts, self.shadows[lamp], Some(own), &region);
             for (i, &bit) in stage.bits.iter().enumerate() {
-                let known_tint = bit > 0.0 && crossed & bit as u32 != 0;
+                let known_tint = bit > 0.0 && crossed & whole(bit) != 0;
                 // Bounds of fields and voxels are too loose to say that a shadow is near.
                 let shape = stage.scene.shape(i);
                 let unbounded = matches!(shape, Shape::Plane(_)) || shape.is_loose();

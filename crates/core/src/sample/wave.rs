@@ -11,9 +11,9 @@ use super::scatter::{self, Draw, Way};
 use crate::counters::{Counter, Counters};
 use crate::cull::{Bounds, Region, occluders};
 use crate::features;
-use crate::math::Vec3;
 use crate::math::hash::mix_x8;
 use crate::math::lanes::{Bound, F, U, V3, splat};
+use crate::math::{Vec3, whole};
 use crate::render::Stage;
 use crate::scene::{Channel, Shading};
 use crate::shade::{self, MAX_LAMPS, Visibility};
@@ -179,7 +179,7 @@ fn step(stage: &Stage, scratch: &mut Scratch, candidates: u64, level: u32) {
             for (lane, &owner) in owners.iter().enumerate() {
                 // Two hits deep for all, three for what is seen through glass.
                 let id = samples.get(owner as usize).id();
-                let shape = id.max(0.0) as usize >> 2;
+                let shape = whole(id.max(0.0)) >> 2;
                 let glass = id >= 0.0 && stage.bits.get(shape).is_some_and(|&bit| bit > 0.0);
                 let deep = level == 1 || (level == 2 && glass);
                 let hash = (deep && drawn >> lane & 1 == 0).then_some(hash.as_array()[lane]);
@@ -230,7 +230,7 @@ fn shade_packet(
         // Before the fog, which is mostly behind it.
         let pace = stage.quality.smoke * if level > 0 { 3.0 } else { 1.0 };
         counters.watch.enter(Phase::SmokeRender);
-        let (through, glow) = volume.march(rays, hit.t, pace, &stage.lamps, counters);
+        let (through, glow) = volume.march(stage, rays, hit.t, pace, counters);
         counters.watch.enter(Phase::Shading);
         light += weight * glow;
         weight = weight * through;

@@ -22,6 +22,8 @@ pub struct Air {
     pub drag: f32,
     /// Sweeps of the pressure a step.
     pub sweeps: u32,
+    /// Share of their turning that is given back to whirls in a step, 0 for none; over 1/2 it boils.
+    pub swirl: f32,
 }
 
 impl Air {
@@ -38,6 +40,7 @@ impl Air {
         cool: 0.0,
         drag: 0.0,
         sweeps: 16,
+        swirl: 0.0,
     };
 
     /// What it comes to in a step, for cells of a side, world units.
@@ -47,7 +50,7 @@ impl Air {
         let slow = 1.0 - self.drag * Self::SECONDS;
         let (fade, cool) = (1.0 - self.fade * Self::SECONDS, 1.0 - self.cool * Self::SECONDS);
         Motion {
-            keep: [slow, slow, slow, fade, cool, 0.0, 0.0, 0.0],
+            keep: [slow, slow, slow, fade, cool, 0.0, 0.0, self.swirl],
             source: [f32::MIN, f32::MIN, f32::MIN, self.density, self.heat, 0.0, 0.0, 0.0],
             by_density: [x * pace, y * pace, z * pace, 0.0, 0.0, 0.0, 0.0, 0.0],
             by_heat: [0.0, self.lift * pace, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
@@ -59,7 +62,7 @@ impl Air {
 /// How the air moves in a step; lanes as those of a cell's values.
 #[derive(Clone, Copy, Debug)]
 pub struct Motion {
-    /// Factors.
+    /// Factors; in the last lane, which none is for, [`Motion::swirl`].
     pub keep: [f32; 8],
     /// The least values where smoke comes from.
     pub source: [f32; 8],
@@ -69,6 +72,13 @@ pub struct Motion {
     pub by_heat: [f32; 8],
     /// Sweeps of the pressure.
     pub sweeps: u32,
+}
+
+impl Motion {
+    /// Share of the turning of whirls that is given back to them.
+    pub fn swirl(&self) -> f32 {
+        self.keep[7]
+    }
 }
 
 /// Smoke in a box. It begins without any, and what it is after so many steps follows from the
@@ -105,6 +115,8 @@ pub struct Rules {
     pub ambient: Vec3,
     /// Light given off per unit of temperature, linear RGB.
     pub glow: Vec3,
+    /// Whether bodies cast shadows on it: a ray to each lamp from each place that is marched through.
+    pub shaded: bool,
 }
 
 impl Rules {
@@ -124,6 +136,7 @@ impl Rules {
             gain: 1.0,
             ambient: Vec3::ZERO,
             glow: Vec3::ZERO,
+            shaded: false,
         }
     }
 

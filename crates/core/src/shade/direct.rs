@@ -8,9 +8,9 @@ use super::ggx::ggx;
 use super::lamps::Lamp;
 use crate::counters::{Counter, Counters};
 use crate::features;
-use crate::math::Vec3;
 use crate::math::lanes::{Bound, F, V3, splat};
 use crate::math::lanes_fn::{exp, pow};
+use crate::math::{Vec3, whole};
 use crate::render::Stage;
 use crate::scene::{Channel, Scene, Shading};
 use crate::study::Phase;
@@ -153,6 +153,9 @@ pub fn direct(
     let mirrors = s.value(Channel::Reflection).simd_gt(zero);
     let start = s.point + s.facing * s.clearance;
     for (k, lamp) in stage.lamps.iter().enumerate() {
+        if cfg!(feature = "counters") {
+            counters.add(lamp.counter(), 8);
+        }
         let aim = Aim::at(lamp.position, s, start);
         let reach = lamp.lobe(-aim.l);
         // Mirrors show shining rectangles themselves, in place of a highlight.
@@ -204,7 +207,6 @@ pub fn direct(
             continue;
         }
         counters.add(Counter::LightEvaluations, 8);
-        counters.add(Counter::FillLights, 8 * usize::from(lamp.is_fill));
         let open = F::ONE + code.at_most(zero);
         let mut light = tinted(stage, lamp, code) * (lit & (reach * open / aim.d2));
         if let Some(volume) = stage.volume.filter(|_| features::SMOKE) {
@@ -290,13 +292,13 @@ fn highlight(stage: &Stage, s: &Surface, l: V3, v: V3, n_l: F, counters: &mut Co
 }
 
 /// The lamp's colour behind the transparent shapes of each lane's code.
-fn tinted(stage: &Stage, lamp: &Lamp, code: F) -> V3 {
+pub fn tinted(stage: &Stage, lamp: &Lamp, code: F) -> V3 {
     let colour = V3::splat(lamp.colour);
     if !code.simd_gt(F::ZERO).any() {
         return colour;
     }
     let lanes = code.to_array().map(|c| {
-        let bits = c as u32;
+        let bits = whole(c);
         let tints = stage.tints.iter().enumerate();
         tints.fold(Vec3::ONE, |sum, (i, &tint)| if bits >> i & 1 == 1 { sum * tint } else { sum })
     });

@@ -1,5 +1,6 @@
 //! Lamps as shading sees them: points, spots and shining rectangles in one form.
 
+use crate::counters::Counter;
 use crate::features;
 use crate::math::Vec3;
 use crate::math::lanes::{Bound, F, V3, splat};
@@ -65,6 +66,16 @@ impl Lamp {
     pub fn lights(&self, material: &Material) -> bool {
         let highlight = material.specular.max_element() > 0.0;
         material.diffuse > 0.0 || (highlight && !(self.is_emitter && material.reflection > 0.0))
+    }
+
+    /// The counter of its kind.
+    pub fn counter(&self) -> Counter {
+        match (self.is_emitter, self.is_fill) {
+            (true, _) => Counter::RectangleLights,
+            (_, true) => Counter::FillLights,
+            _ if self.axis == Vec3::ZERO => Counter::PlainLights,
+            _ => Counter::SpotLights,
+        }
     }
 
     /// Share of the lamp's light that goes in unit direction `d` away from it.

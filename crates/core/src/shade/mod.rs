@@ -14,7 +14,7 @@ mod points;
 
 pub use background::{background, emitters};
 pub use beam::beam;
-pub use direct::{Codes, Lit, Local, MAX_LAMPS, Visibility, ambient, beckmann, direct, local};
+pub use direct::{Codes, Lit, Local, MAX_LAMPS, Visibility, ambient, beckmann, direct, local, tinted};
 pub use fog::fog;
 pub use fresnel::{Refracted, Split, refract, schlick, split};
 pub use ggx::{distribution, masking, sample, visibility};

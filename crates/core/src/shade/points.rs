@@ -7,8 +7,8 @@
 //! of these is enough: a ball meets the columns and rows that its bounds on the screen meet.
 
 use crate::cull::{Bounds, Dop, View};
-use crate::math::Vec3;
 use crate::math::lanes::{Bound, F, V3, splat};
+use crate::math::{Vec3, whole};
 use crate::scene::PointLight;
 
 /// Small lights of a scene that shine; those after them don't.
@@ -46,7 +46,7 @@ impl Points {
     pub fn new(lights: &[PointLight], view: View, size: [u32; 2], pixel: f32, side: u32) -> Self {
         let side = pixel * side as f32;
         let corner = size.map(|n| -0.5 * n as f32 * pixel);
-        let mut bands = corner.map(|c| vec![Mask::default(); (-2.0 * c / side) as usize + 1]);
+        let mut bands = corner.map(|c| vec![Mask::default(); whole(-2.0 * c / side) + 1]);
         let mut eights = Vec::new();
         for (i, light) in lights.iter().take(MAX_POINTS).enumerate() {
             if i % 8 == 0 {
@@ -59,7 +59,7 @@ impl Points {
             for (axis, bands) in bands.iter_mut().enumerate() {
                 let [lo, hi] = bound.extent(axis);
                 // One more than the band; 0 for what lies before the first.
-                let band = |at: f32| ((at - corner[axis]) / side + 1.0) as usize;
+                let band = |at: f32| whole(((at - corner[axis]) / side + 1.0).max(0.0));
                 let (first, last) = (band(lo - SLACK * side), band(hi + SLACK * side));
                 for mask in bands.iter_mut().take(last).skip(first.saturating_sub(1)) {
                     mask[i / 64] |= 1 << (i % 64);
@@ -74,8 +74,7 @@ impl Points {
     pub fn tile(&self, x: f32, y: f32) -> Option<Mask> {
         let band = |axis: usize, at: f32| {
             let at = (at - self.corner[axis]) / self.side;
-            // Negative numbers turn to 0 in the cast, so they are asked about first.
-            if at >= 0.0 { self.bands[axis].get(at as usize) } else { None }
+            if at >= 0.0 { self.bands[axis].get(whole(at)) } else { None }
         };
         let (column, row) = (band(0, x)?, band(1, y)?);
         Some(std::array::from_fn(|i| column[i] & row[i]))

@@ -3,12 +3,14 @@
 use super::grid::{Eight, Grid, lanes};
 use super::{DENSITY, Simulation, State};
 use crate::counters::{Counter, Counters};
+use crate::features;
 use crate::math::lanes::{Bound, F, V3, least, splat};
 use crate::math::lanes_fn::exp;
 use crate::math::number;
+use crate::render::Stage;
 use crate::scene::{Rules, Smoke, Voxels};
-use crate::shade::Lamp;
-use crate::trace::{Rays8, voxels};
+use crate::shade::{MAX_LAMPS, tinted};
+use crate::trace::{Rays8, occlusion, voxels};
 
 /// Side of the bricks by which empty space is skipped, cells.
 const BRICK: usize = 4;
@@ -88,7 +90,7 @@ impl<'a> Volume<'a> {
     /// Share of what lies behind that rays with unit directions see through the smoke up to `end`, and
     /// the light that the smoke adds. Steps are `pace` cells long.
     #[inline(never)]
-    pub fn march(&self, rays: &Rays8, end: F, pace: f32, lamps: &[Lamp], counters: &mut Counters) -> (F, V3) {
+    pub fn march(&self, stage: &Stage, rays: &Rays8, end: F, pace: f32, counters: &mut Counters) -> (F, V3) {
         let smoke = self.smoke;
         let (mut through, mut light) = (F::ONE, V3::ZERO);
         let is_full = |p: V3| self.full.values(self.full.in_cells(p)).simd_gt(F::ZERO);
@@ -118,7 +120,7 @@ impl<'a> Volume<'a> {
             counters.add(Counter::SmokeMarched, busy.to_bitmask().count_ones() as usize);
             let [density, heat, dark @ ..] = self.at(p, busy);
             let mut source = V3::splat(smoke.ambient) + V3::splat(smoke.glow) * heat;
-            for (i, lamp) in lamps.iter().enumerate() {
+            for (i, lamp) in stage.lamps.iter().enumerate() {
                 let way = V3::splat(lamp.position) - p;
                 let d2 = way.dot(way).at_least(splat(smoke.cell * smoke.cell));
                 let l = way * (F::ONE / d2.sqrt());
@@ -130,13 +132,29 @@ impl<'a> Volume<'a> {
                 };
                 let turned = lobe(a) * splat(weight) + lobe(b) * splat(1.0 - weight);
                 let share = F::ONE - dark.get(i).copied().unwrap_or(F::ZERO);
-                source += V3::splat(lamp.colour * smoke.gain) * (lamp.lobe(-l) * turned * share / d2);
+                let colour = self.lamp(stage, i, &Rays8 { origin: p, direction: way }, busy, counters);
+                source += colour * (lamp.lobe(-l) * turned * share / d2);
             }
             let next = through * exp(-(density * splat(smoke.extinction) * step));
             light += (source * V3::splat(smoke.albedo) * (through - next)) & busy;
             through = busy.select(next, through);
         }
         (through, light)
+    }
+
+    /// Colour of a lamp's light where it comes to points from which `way` runs to it: what bodies leave of it,
+    /// if they cast shadows on this smoke.
+    #[inline(always)]
+    fn lamp(&self, stage: &Stage, i: usize, way: &Rays8, wanted: F, counters: &mut Counters) -> V3 {
+        let (lamp, gain) = (&stage.lamps[i], self.smoke.gain);
+        if !features::SMOKE_SHADOWS || !self.smoke.shaded || lamp.is_fill || i >= MAX_LAMPS {
+            return V3::splat(lamp.colour * gain);
+        }
+        let count = wanted.to_bitmask().count_ones() as usize;
+        counters.add(Counter::SmokeShadowRays, count);
+        counters.add_rays(count);
+        let code = occlusion(stage.scene, &stage.quality, &stage.bits, way, wanted, u64::MAX, counters);
+        tinted(stage, lamp, code) * (splat(gain) + splat(gain) * code.at_most(F::ZERO))
     }
 
     /// Share of a lamp's light that the smoke leaves on its way from `from + way`, where the lamp is,

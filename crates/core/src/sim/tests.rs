@@ -2,10 +2,12 @@
 //! less divergence with each sweep, the same on any number of threads and by any way to a step.
 
 use super::*;
+use crate::counters::Counter;
 use crate::math::Vec3;
 use crate::math::lanes::{F, V3, splat};
+use crate::quality::Quality;
+use crate::render::Stage;
 use crate::scene::{Air, Edit, Light, LightKind, Scene, Voxels};
-use crate::shade::{Lamp, lamps};
 use crate::trace::Rays8;
 use crate::trace::check::{Random, packet};
 
@@ -47,6 +49,7 @@ const AIR: Air = Air {
     cool: 0.3,
     drag: 0.2,
     sweeps: 12,
+    swirl: 0.0,
 };
 
 fn smoke(figure: fn(u32) -> Voxels, air: Air) -> Smoke {
@@ -87,7 +90,10 @@ fn however_long_it_burns_all_is_finite_bounded_and_never_subnormal() {
         burning(1)
     }
     let air = Air { fade: 0.0, cool: 0.0, drag: 0.0, lift: 40.0, ..AIR };
-    for (name, s) in [("ever", smoke(ever, air)), ("burning", smoke(burning, AIR))] {
+    let boiling = Air { swirl: 0.5, ..air };
+    for (name, s) in
+        [("ever", smoke(ever, air)), ("boiling", smoke(ever, boiling)), ("burning", smoke(burning, AIR))]
+    {
         let mut simulation = Simulation::default();
         let mut moved = false;
         for steps in 1..=3_000 {
@@ -182,9 +188,53 @@ fn each_sweep_leaves_less_divergence() {
     assert!(last < 0.6 * first, "{last} of {first}");
 }
 
+/// Sum of squares of the velocity's curl.
+fn turning(simulation: &Simulation) -> f64 {
+    let grid = Grid { size: SIZE };
+    let steps = grid.steps();
+    let cells = &simulation.state().cells;
+    let mut sum = 0.0;
+    for i in (0..SIZE.iter().product()).map(|i: usize| [i % 16, i / 16 % 20, i / 320]) {
+        let at = grid.index(i.map(|i| i + 1));
+        let across = |axis: usize, of: usize| {
+            0.5 * f64::from(cells[at + steps[axis]][of] - cells[at - steps[axis]][of])
+        };
+        for (a, b) in [(1, 2), (2, 0), (0, 1)] {
+            let w = across(a, b) - across(b, a);
+            sum += w * w;
+        }
+    }
+    sum
+}
+
+#[test]
+fn swirl_keeps_whirls_turning_and_still_air_still() {
+    let with = |figure, swirl, steps| play(smoke(figure, Air { swirl, ..AIR }), steps);
+    let mut last = turning(&with(burning, 0.0, 100));
+    for swirl in [0.1, 0.2, 0.3] {
+        let now = turning(&with(burning, swirl, 100));
+        assert!(now > 1.05 * last, "{now} after {last} with a swirl of {swirl}");
+        last = now;
+    }
+    let calm = |swirl| play(smoke(puff, Air { swirl, ..Air::DEFAULT }), 30);
+    assert!(same(&calm(0.0), &calm(0.3)), "where nothing moves, nothing begins to");
+    // On any number of threads.
+    let on = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| with(burning, 0.3, 60))
+    };
+    assert!(same(&on(1), &on(3)));
+    // It is counted.
+    let mut counters = Counters::default();
+    Simulation::default()
+        .run(&Smoke { steps: 2, ..smoke(burning, Air { swirl: 0.2, ..AIR }) }, &mut counters);
+    let cells = if cfg!(feature = "counters") { 2 * 16 * 20 * 12 } else { 0 };
+    assert_eq!(counters.get(Counter::SmokeSwirled), cells);
+}
+
 #[test]
 fn solid_cells_stay_empty_and_still() {
-    let s = smoke(burning, AIR);
+    let s = smoke(burning, Air { swirl: 0.2, ..AIR });
     let mut simulation = Simulation::default();
     for steps in [1, 5, 20, 40, 80] {
         simulation.run(&Smoke { steps, ..s }, &mut Counters::default());
@@ -227,7 +277,7 @@ fn any_number_of_threads_and_any_way_to_a_step_gives_the_same_bits() {
 }
 
 /// What is seen of smoke, and the lamps where it says.
-fn seen(s: &Smoke, look: impl FnOnce(&Volume, &[Lamp])) {
+fn seen(s: &Smoke, look: impl FnOnce(&Volume, &Stage)) {
     let simulation = play(*s, s.steps);
     let mut shown = Vec::new();
     let volume = Volume::new(s, &simulation, &mut shown, &mut Counters::default());
@@ -235,7 +285,7 @@ fn seen(s: &Smoke, look: impl FnOnce(&Volume, &[Lamp])) {
     let mut scene = Scene { lights: s.rules.lamps.map(light).into(), ..Default::default() };
     // One more, within.
     scene.lights.push(light(Vec3::new(0.8, 3.5, 0.6)));
-    look(&volume, &lamps(&scene));
+    look(&volume, &Stage::new(&scene, &Quality::PRESETS[3].1, 8, 8));
 }
 
 #[test]
@@ -243,14 +293,14 @@ fn even_smoke_dims_as_beer_lambert_and_light_by_its_depth() {
     let air = Air { density: 0.7, ..Air::DEFAULT }.motion(0.1);
     let s = made(Rules { extinction: 3.0, air, ..*smoke(full, Air::DEFAULT).rules });
     let s = Smoke { steps: 40, ..s };
-    seen(&s, |volume, lamps| {
+    seen(&s, |volume, stage| {
         let mut counters = Counters::default();
         let rays = |direction: Vec3| Rays8 {
             origin: V3::splat(Vec3::new(0.8, 1.0, 0.6) - direction * 4.0),
             direction: V3::splat(direction),
         };
         for (direction, length) in [(Vec3::X, 1.6), (Vec3::Y, 2.0), (Vec3::NEG_Z, 1.2)] {
-            let mut march = |end: f32| volume.march(&rays(direction), splat(end), 0.25, lamps, &mut counters);
+            let mut march = |end: f32| volume.march(stage, &rays(direction), splat(end), 0.25, &mut counters);
             let (through, light) = march(f32::INFINITY);
             // At its border the density runs out over a cell, the same in all.
             let exact = crate::math::scalar::exp(-2.1 * length);
@@ -275,10 +325,41 @@ fn even_smoke_dims_as_beer_lambert_and_light_by_its_depth() {
 }
 
 #[test]
+fn thin_smoke_scatters_nearly_as_henyey_and_greenstein_say() {
+    // The sun is far along z. What comes through thin smoke is even but for the angle.
+    let sun = Light { position: Vec3::Z * 1e4, colour: Vec3::splat(1e8), kind: LightKind::Point };
+    let scene = Scene { lights: vec![sun], ..Default::default() };
+    let stage = Stage::new(&scene, &Quality::PRESETS[3].1, 8, 8);
+    for g in [0.0, 0.2, 0.45, 0.6, -0.4] {
+        let phase = [1.0, 1.55 * g - 0.55 * g * g * g, 0.0];
+        let s = made(Rules { extinction: 1e-3, phase, ..*smoke(full, Air::DEFAULT).rules });
+        let simulation = play(s, 20);
+        let mut shown = Vec::new();
+        let s = Smoke { steps: 20, ..s };
+        let volume = Volume::new(&s, &simulation, &mut shown, &mut Counters::default());
+        let light = |cos: f32| {
+            let direction = Vec3::new(0.0, (1.0 - cos * cos).sqrt(), cos);
+            // Through the same length of it, from the middle on.
+            let origin = V3::splat(Vec3::new(0.8, 1.0, 0.6) - direction * 2.0);
+            let rays = Rays8 { origin, direction: V3::splat(direction) };
+            let start = volume.march(&stage, &rays, splat(1.8), 0.05, &mut Counters::default()).1;
+            let (_, all) = volume.march(&stage, &rays, splat(2.2), 0.05, &mut Counters::default());
+            f64::from(all.x.as_array()[0] - start.x.as_array()[0])
+        };
+        let angles = (0..64).map(|i| (2.0 * i as f32 + 1.0) / 64.0 - 1.0);
+        let pairs = angles.map(|cos| (light(cos), f64::from(crate::kernels::henyey_greenstein(cos, g))));
+        let pairs: Vec<(f64, f64)> = pairs.collect();
+        let sums = pairs.iter().fold((0.0, 0.0), |sum, p| (sum.0 + p.0, sum.1 + p.1));
+        let apart = pairs.iter().map(|p| (p.0 / sums.0 - p.1 / sums.1).abs()).sum::<f64>() / 2.0;
+        assert!(apart < 0.06, "g = {g}: {:.1} % of the light goes elsewhere", 100.0 * apart);
+    }
+}
+
+#[test]
 fn steps_change_little_an_early_end_less_and_lanes_nothing_at_all() {
     let s = made(Rules { extinction: 9.0, ambient: Vec3::ONE, ..*smoke(burning, AIR).rules });
     let s = Smoke { steps: 30, ..s };
-    seen(&s, |volume, lamps| {
+    seen(&s, |volume, stage| {
         let mut counters = Counters::default();
         let mut count = 0;
         for case in 0..400 {
@@ -291,7 +372,7 @@ fn steps_change_little_an_early_end_less_and_lanes_nothing_at_all() {
             });
             let ends = F::new(std::array::from_fn(|_| random.range(0.5, 8.0)));
             let mut march =
-                |rays: &Rays8, ends: F, pace: f32| volume.march(rays, ends, pace, lamps, &mut counters);
+                |rays: &Rays8, ends: F, pace: f32| volume.march(stage, rays, ends, pace, &mut counters);
             let (through, light) = march(&rays, ends, 1.0);
             let (fine, bright) = march(&rays, ends, 0.05);
             for lane in 0..8 {

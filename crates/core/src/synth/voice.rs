@@ -18,7 +18,7 @@ use super::instrument::*;
 use crate::math::hash::unit;
 use crate::math::lanes::{Bound, F, LANES, ONE, RAMP, TRUE, U, ZERO, select, splat, splat_u};
 use crate::math::lanes_fn::{exp, exp2, sin_turns, wrap};
-use crate::math::scalar;
+use crate::math::{scalar, whole};
 
 /// Samples between two changes of pitch, modulation and filter.
 const CONTROL: u32 = 32;
@@ -107,7 +107,7 @@ pub fn start(packets: &mut Vec<Packet>, note: &Note, gain: f32) {
     v[DELAY] *= note.delay * 0.5;
     v[LENGTH] = note.length as f32;
     let copies = v[COPIES];
-    for copy in 0..copies as u32 {
+    for copy in 0..whole(copies) as u32 {
         // -1 to 1 from the first copy to the last; places alternate where there are many.
         let x = if copies > 1.0 { 2.0 * copy as f32 / (copies - 1.0) - 1.0 } else { 0.0 };
         let side = v[SPREAD] * if copies > 2.0 && copy % 2 == 1 { -x } else { x };

@@ -13,6 +13,7 @@ use super::{Rays8, Shape};
 use crate::counters::{Counter, Counters};
 use crate::features;
 use crate::math::lanes::{Bound, F, V3, splat};
+use crate::math::whole;
 use crate::quality::Quality;
 use crate::scene::{Channel, Field, Join, Material, Pattern, Scene, Sphere};
 
@@ -190,7 +191,7 @@ pub fn surface(scene: &Scene, quality: &Quality, rays: &Rays8, t: F, id: F, spre
         let lane_id = ids[first];
         let mut mask = id.simd_eq(splat(lane_id));
         todo &= !mask.to_bitmask();
-        let (index, part) = (lane_id as usize >> 2, lane_id as u32 & 3);
+        let (index, part) = (whole(lane_id) >> 2, whole(lane_id) as u32 & 3);
         let shape = scene.shape(index);
         if let (true, Shape::Field(field)) = (features::FIELDS, shape) {
             let found = on_field(field, p, t * spread, rays.direction);
@@ -213,7 +214,7 @@ pub fn surface(scene: &Scene, quality: &Quality, rays: &Rays8, t: F, id: F, spre
                 let value = face.value.as_array()[first];
                 mask &= face.value.simd_eq(splat(value));
                 todo = before & !mask.to_bitmask();
-                material += (value as usize).saturating_sub(1);
+                material += whole(value).saturating_sub(1);
                 s.part = mask.select(face.plane, s.part);
                 shade = face.shade;
                 (face.point, face.outward, face.outward, V3::splat(grid.lo).max_abs())

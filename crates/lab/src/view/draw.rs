@@ -5,6 +5,7 @@ use crate::font;
 use crate::metric::Picture;
 use luc::show;
 use luc_core::counters::{Counter, Counters};
+use luc_core::plan;
 use luc_core::quality::Quality;
 use luc_core::render::Renderer;
 use luc_core::scene::Scene;
@@ -122,6 +123,9 @@ impl Drawer {
             if count > 0 {
                 text += &format!("\n{count:>9} {name}");
             }
+        }
+        for warning in plan::warnings(&state.scene(), &Quality::PRESETS[state.quality].1) {
+            text += &format!("\nwarning: {warning}");
         }
         text + "\nh  help"
     }

@@ -53,6 +53,9 @@ const RUSTFLAGS: &[&str] = &[
     // Fewer shared subexpressions are fewer spills (150), and short jump tables cost more than comparisons (90).
     "-Cllvm-args=-disable-machine-cse",
     "-Cllvm-args=-min-jump-table-entries=8",
+    // What isn't marked to be inlined is not, before the last step; comparisons stay as they were written (140).
+    "-Zcross-crate-inline-threshold=0",
+    "-Zmir-enable-passes=-JumpThreading",
     // Warnings are for the ordinary build, which sees the same code.
     "--cap-lints=allow",
 ];
@@ -109,7 +112,7 @@ pub fn build(root: &Path, output: &Path) -> Result<Built, Error> {
         .args(["rustc", "--quiet", "--locked", "--package=luc", "--bin=luc", "--profile=intro"])
         .arg("--message-format=json-render-diagnostics")
         .stderr(Stdio::inherit())
-        .args(["--no-default-features", "--features=sound,smoke,cost", "--target", workspace::TARGET])
+        .args(["--no-default-features", "--features=sound,smoke,swarm,cost", "--target", workspace::TARGET])
         .args(["-Zbuild-std=std,panic_abort", "-Zbuild-std-features=optimize_for_size"])
         .arg("--target-dir")
         .arg(&target_directory)

@@ -1,6 +1,7 @@
 use super::*;
 use crate::math::Vec3;
 use crate::math::hash::unit;
+use crate::sample::{self, Record, TILE};
 use crate::scene::Place;
 use glam::Vec2;
 
@@ -8,7 +9,7 @@ use glam::Vec2;
 const SIZE: [usize; 2] = [83, 41];
 
 /// Each effect once, strong enough to be seen.
-const KINDS: [Kind; 11] = [
+const KINDS: [Kind; 12] = [
     Kind::Contrast(1.7),
     Kind::Tint { colour: Vec3::new(1.0, 0.6, 0.2), strength: 0.7 },
     Kind::Bloom { threshold: 0.6, intensity: 0.8 },
@@ -20,6 +21,7 @@ const KINDS: [Kind; 11] = [
     Kind::Lighten(0.3),
     Kind::Tube { base: 0.5, glow: 0.6, radius: 0.9 },
     Kind::Grain(0.1),
+    Kind::Cells { shade: 0.6, colour: Vec3::new(0.07, 0.06, 0.18) },
 ];
 
 /// A chain with a picture of values.
@@ -35,8 +37,26 @@ fn noisy(x: usize, y: usize) -> Vec3 {
     Vec3::new(value(0), value(1), value(2)) * if (x + y).is_multiple_of(7) { 1.0 } else { 0.5 }
 }
 
+/// How the pixels were got: on the left filled in cells of 8 px over traced ones, on the right interpolated
+/// in cells of 2 px over such of 16.
+fn record(x: usize, y: usize) -> Record {
+    match (x < TILE, y < TILE / 4) {
+        (true, true) => Record::new(sample::Kind::Filled, 8),
+        (true, false) => Record::new(sample::Kind::Traced, 8),
+        (false, true) => Record::new(sample::Kind::Interpolated, 2),
+        (false, false) => Record::new(sample::Kind::Interpolated, 16),
+    }
+}
+
 fn run(chain: &mut Chain, effects: &[Effect]) {
-    chain.run(effects, &[], 5, &mut Counters::default());
+    let tile = |left: usize| {
+        let mut tile = Tile::default();
+        for (i, found) in tile.record.iter_mut().enumerate() {
+            *found = record(left + i % TILE, i / TILE);
+        }
+        tile
+    };
+    chain.run(effects, &[tile(0), tile(TILE)], 5, &mut Counters::default());
 }
 
 fn pixel(chain: &Chain, x: usize, y: usize) -> Vec3 {
@@ -229,6 +249,36 @@ fn effects_do_what_their_formulas_say() {
                     v + colour.as_dvec3() * step.min(1.0)
                 }
                 Kind::Lighten(share) => v.lerp(glam::DVec3::ONE, share.into()),
+                Kind::Fringes(shift) => {
+                    // Where a colour is read, from the middle of the picture on, and what lies there.
+                    let read = |share: f64, colour: usize| {
+                        let place = |p: usize, size: usize| {
+                            let half = size as f64 / 2.0;
+                            ((p as f64 + 0.5 - half) * share + half - 0.5).clamp(0.0, size as f64 - 1.0)
+                        };
+                        let (u, v) = (place(x, SIZE[0]), place(y, SIZE[1]));
+                        let (i, j) = (u as usize, v as usize);
+                        let row =
+                            |j| f64s(i, j)[colour] * (1.0 - u.fract()) + f64s(i + 1, j)[colour] * u.fract();
+                        row(j) * (1.0 - v.fract()) + row(j + 1) * v.fract()
+                    };
+                    let shift = f64::from(shift);
+                    glam::DVec3::new(read(1.0 - shift, 0), v.y, read(1.0 + shift, 2))
+                }
+                Kind::Tube { base, glow, radius } => {
+                    let [px, py] =
+                        [(x, SIZE[0]), (y, SIZE[1])].map(|(p, n)| (2 * p + 1) as f64 / n as f64 - 1.0);
+                    let radius = f64::from(radius);
+                    let far = (px * px + py * py) / (2.0 * radius * radius);
+                    v * (f64::from(base) + f64::from(glow) * (1.0 - far).max(0.0))
+                }
+                Kind::Cells { shade, colour } => {
+                    let side = record(x, y).size();
+                    let border = record(x, y).kind() != sample::Kind::Traced
+                        && side >= 4
+                        && (x.is_multiple_of(side) || y.is_multiple_of(side));
+                    if border { v * f64::from(shade) + colour.as_dvec3() } else { v }
+                }
                 Kind::Levels(n) => {
                     let level = |v: f64, n: f64| (v * n).floor().min(n - 1.0) / (n - 1.0);
                     let n = n.as_dvec3();
@@ -237,7 +287,29 @@ fn effects_do_what_their_formulas_say() {
                 _ => continue,
             };
             let off = (pixel(&chain, x, y).as_dvec3() - expected).abs().max_element();
-            assert!(off < 4e-6, "{kind:?} at ({x}, {y}): {off} off");
+            // Places are rounded at tens of pixels.
+            let room = if matches!(kind, Kind::Fringes(_)) { 2e-5 } else { 4e-6 };
+            assert!(off < room, "{kind:?} at ({x}, {y}): {off} off");
         }
     }
+}
+
+#[test]
+fn grain_is_even_noise_around_nothing_and_new_in_each_frame() {
+    let half = 0.1;
+    let of_frame = |n: u64| {
+        let mut chain = with(|_, _| Vec3::splat(0.5));
+        chain.run(&[Effect::new(Kind::Grain(half))], &[], n, &mut Counters::default());
+        let places = (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| (x, y)));
+        places.map(|(x, y)| f64::from(pixel(&chain, x, y).x - 0.5)).collect::<Vec<_>>()
+    };
+    let (first, second) = (of_frame(0), of_frame(1));
+    let count = first.len() as f64;
+    assert!(first.iter().all(|v| v.abs() <= f64::from(half) + 1e-6));
+    let mean = first.iter().sum::<f64>() / count;
+    let spread = first.iter().map(|v| v * v).sum::<f64>() / count;
+    // An even spread has a third of the square; four standard deviations of 3,403 draws.
+    assert!(mean.abs() < 0.004 && (spread / 0.01 - 1.0 / 3.0).abs() < 0.021, "{mean} {spread}");
+    let alike = first.iter().zip(&second).map(|(a, b)| a * b).sum::<f64>() / count;
+    assert!(alike.abs() < 0.00023, "frames have noise of their own: {alike}");
 }

@@ -319,6 +319,84 @@ fn edits_do_what_they_say() {
 }
 
 #[test]
+fn edits_of_a_region_leave_the_rest_and_what_they_are_not_for() {
+    // Solid cells of values 1 to 3 and empty ones, mixed.
+    let random = &mut Random::new(3);
+    let mut before = Voxels::new(Vec3::ZERO, 1.0, [11, 9, 10]);
+    before.edit_all_by(&mut |_, _| (random.bits() % 4) as u8);
+    let (lo, hi) = ([2, 1, 3], [9, 7, 8]);
+    let all = || (0..11 * 9 * 10).map(|i| [i % 11, i / 11 % 9, i / 99]);
+    let edits = [
+        Edit::Add(7),
+        Edit::Remove,
+        Edit::Paint(7),
+        Edit::PaintRandomly(7, 128, 5),
+        Edit::Overwrite(7),
+        Edit::Convert,
+    ];
+    for edit in edits {
+        let mut after = before.clone();
+        after.edit(edit, lo, hi);
+        let (mut painted, mut within) = (0, 0);
+        for at in all() {
+            let (old, new) = (before.get(at), after.get(at));
+            let inside = (0..3).all(|axis| (lo[axis]..hi[axis]).contains(&at[axis]));
+            let solid = old != Voxels::EMPTY;
+            let expected = match edit {
+                _ if !inside => old,
+                Edit::Add(v) => [v, old][usize::from(solid)],
+                Edit::Remove => Voxels::EMPTY,
+                Edit::Paint(v) => [old, v][usize::from(solid)],
+                Edit::PaintRandomly(v, ..) if solid && new == v => new,
+                Edit::PaintRandomly(..) => old,
+                Edit::Overwrite(v) => v,
+                Edit::Convert => [old, Voxels::SMOKE][usize::from(solid)],
+            };
+            assert_eq!(new, expected, "{edit:?} at {at:?}, was {old}");
+            within += u32::from(inside && solid);
+            painted += u32::from(inside && new == 7);
+        }
+        if matches!(edit, Edit::PaintRandomly(..)) {
+            // Four standard deviations of a half; the same cells again, others by another seed.
+            assert!((f64::from(painted) / f64::from(within) - 0.5).abs() < 0.16, "{painted} of {within}");
+            let again = |seed| {
+                let mut grid = before.clone();
+                grid.edit(Edit::PaintRandomly(7, 128, seed), lo, hi);
+                grid
+            };
+            assert!(again(5) == after && again(6) != after);
+        }
+    }
+    // A layer is the region of its height, all is the region of the grid.
+    for edit in edits {
+        let [mut layer, mut region, mut whole, mut most] = [0; 4].map(|_| before.clone());
+        layer.edit_layer(edit, 4);
+        region.edit(edit, [0, 4, 0], [11, 5, 10]);
+        whole.edit_all(edit);
+        most.edit(edit, [i32::MIN; 3], [i32::MAX; 3]);
+        assert!(layer == region && whole == most, "{edit:?}");
+    }
+}
+
+#[test]
+fn the_largest_grid_is_walked_as_well() {
+    let random = &mut Random::new(128);
+    let mut grid = Voxels::new(Vec3::ZERO, 1.0, [200; 3]);
+    assert_eq!(grid.size(), [Voxels::MOST; 3], "more cells than that there aren't");
+    grid.edit_all_by(&mut |_, _| u8::from(random.one_in(150)));
+    let mut hits = 0;
+    for case in 0..24 {
+        let (origin, direction) = any_ray(random, &grid);
+        let found = walk(&grid, origin, direction, f32::INFINITY, &mut Counters::default());
+        let every = brute(&grid, &Ray::new(origin, direction), f32::INFINITY);
+        let bits = |found: Option<(f32, i32)>| found.map(|(t, axis)| (t.to_bits(), axis));
+        assert_eq!(bits(found), bits(every), "ray {case}: {origin:?} {direction:?}");
+        hits += u32::from(found.is_some());
+    }
+    assert!(hits > 2, "{hits} of 24 rays hit something");
+}
+
+#[test]
 fn a_body_fills_the_cells_whose_middles_it_holds() {
     let body = Field::new(vec![
         Node::sphere(Vec3::ZERO, 1.0),

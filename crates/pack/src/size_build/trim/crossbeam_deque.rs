@@ -1,6 +1,6 @@
-//! crossbeam-deque: the same queues behind a lock each, without its collector of garbage.
+//! crossbeam-deque: one queue behind a lock, without its collector of garbage.
 //!
-//! Tasks of the engine are long, so queues are rarely asked for.
+//! Tasks of the engine are long, so the queue is rarely asked for.
 
 use super::super::edit::Source;
 use crate::Error;
@@ -12,7 +12,7 @@ pub fn trim(source: &mut Source) -> Result<(), Error> {
 
 const CROSSBEAM_DEQUE: &str = r#"
 use std::cell::UnsafeCell;
-use std::sync::Arc;
+use std::marker::PhantomData;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 extern "C" {
@@ -54,17 +54,14 @@ impl<T> Injector<T> {
         self.with(|tasks| tasks.push(task))
     }
 
-    /// The oldest task, or the newest.
+    /// The newest task.
     #[inline(never)]
-    fn take(&self, oldest: bool) -> Option<T> {
-        self.with(|tasks| {
-            let end = tasks.len().checked_sub(1)?;
-            Some(tasks.remove(if oldest { 0 } else { end }))
-        })
+    fn take(&self) -> Option<T> {
+        self.with(|tasks| tasks.pop())
     }
 
     pub fn steal(&self) -> Steal<T> {
-        match self.take(true) {
+        match self.take() {
             Some(task) => Steal::Success(task),
             None => Steal::Empty,
         }
@@ -76,41 +73,35 @@ impl<T> Injector<T> {
     }
 }
 
-/// The end of a queue for the thread that owns it: last in, first out.
-pub struct Worker<T>(Arc<Injector<T>>);
+/// A thread's own queue, which nothing is ever put in: the pool keeps one for all.
+pub struct Worker<T>(PhantomData<T>);
 
 impl<T> Worker<T> {
     pub fn new_lifo() -> Self {
-        Worker(Arc::new(Injector::new()))
+        Worker(PhantomData)
     }
 
     pub fn stealer(&self) -> Stealer<T> {
-        Stealer(self.0.clone())
+        Stealer(PhantomData)
     }
 
-    pub fn push(&self, task: T) {
-        self.0.push(task)
-    }
-
-    pub fn pop(&self) -> Option<T> {
-        self.0.take(false)
-    }
+    pub fn push(&self, _: T) {}
 
     pub fn is_empty(&self) -> bool {
-        self.0.is_empty()
+        true
     }
 }
 
 /// The other end, for other threads.
-pub struct Stealer<T>(Arc<Injector<T>>);
+pub struct Stealer<T>(PhantomData<T>);
 
 impl<T> Stealer<T> {
     pub fn steal(&self) -> Steal<T> {
-        self.0.steal()
+        Steal::Empty
     }
 
     pub fn is_empty(&self) -> bool {
-        self.0.is_empty()
+        true
     }
 }
 "#;

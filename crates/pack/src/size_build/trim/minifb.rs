@@ -95,6 +95,11 @@ pub fn trim(source: &mut Source, keys: &BTreeSet<String>) -> Result<(), Error> {
         edit,
     )?;
     source.replace(x11, "    unsafe fn process_button", "    fn update_key_state", "", edit)?;
+    // When keys were pressed and frames shown.
+    for file in ["src/key_handler.rs", "src/rate.rs"] {
+        let new = "prev_time: unsafe { std::mem::zeroed() },";
+        source.replace_text(file, "prev_time: Instant::now(),", new, edit)?;
+    }
     // How long keys have been down, and all keys but those in use.
     source.replace_text(x11, "        self.key_handler.update();\n", "", edit)?;
     source.replace_text(x11, "            let mut supported = 0;\n            (lib.XkbSetDetectableAutoRepeat)(display, 1, &mut supported);\n", "", edit)?;

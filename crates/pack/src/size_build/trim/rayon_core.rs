@@ -1,4 +1,5 @@
-//! rayon-core: one pool, which never ends, of threads that the C library starts.
+//! rayon-core: one pool, which never ends, of threads that the C library starts and that take work from one
+//! queue and sleep in one place.
 //!
 //! As many threads as the system lets this process run on: the published crate also asks environment
 //! variables, and the standard library reads the limits of control groups from files.
@@ -105,7 +106,133 @@ pub fn trim(source: &mut Source) -> Result<(), Error> {
         "        XorShift64Star {\n            state: Cell::new(seed),",
         RAYON_SEED,
         edit,
-    )
+    )?;
+    one_queue(source)?;
+    for_ever(source)
+}
+
+/// All work in the queue that anyone may push to, the newest first, and all who have none asleep in one place.
+fn one_queue(source: &mut Source) -> Result<(), Error> {
+    let edit = "keep one queue";
+    let registry = "src/registry.rs";
+    for (start, end, new) in [
+        (
+            "        let worker_thread = WorkerThread::current();\n        unsafe {\n            if !worker_thread.is_null() && (",
+            "    /// Push a job into the \"external jobs\" queue",
+            "        self.inject(job_ref);\n    }\n\n",
+        ),
+        (
+            "        let queue_was_empty = self.injected_jobs.is_empty();",
+            "    fn has_injected_job(&self) -> bool {\n        !self.injected",
+            "        self.injected_jobs.push(injected_job);\n        self.sleep.wake();\n    }\n\n",
+        ),
+        (
+            "        let queue_was_empty = self.worker.is_empty();",
+            "    #[inline]\n    pub(super) unsafe fn push_fifo",
+            "        self.registry.inject(job);\n    }\n\n",
+        ),
+        (
+            "        let popped_job = self.worker.pop();",
+            "    fn has_injected_job(&self) -> bool {\n        self",
+            "        None\n    }\n\n",
+        ),
+        ("            // Check for local work *before*", "            let mut idle_state = self", ""),
+        (
+            "            let mut idle_state = self",
+            "            while !latch.probe() {",
+            "            let mut rounds = 0;\n",
+        ),
+        (
+            "                    self.registry.sleep.work_found();\n                    self.execute",
+            "                    // The job might",
+            "                    self.execute(job);\n",
+        ),
+        (
+            "                    self.registry\n                        .sleep\n",
+            "        mem::forget(abort_guard); // successful execution, do not",
+            RAYON_WAIT,
+        ),
+        (
+            "        self.take_local_job()\n            .or_else",
+            "    pub(super) fn yield_now",
+            "        self.registry.pop_injected_job()\n    }\n\n",
+        ),
+    ] {
+        source.replace(registry, start, end, new, edit)?;
+    }
+    for call in [
+        "self.sleep.notify_worker_latch_is_set(i)",
+        "self.sleep.notify_worker_latch_is_set(target_worker_index)",
+    ] {
+        source.replace_text(registry, call, "self.sleep.wake()", edit)?;
+    }
+    source.replace_text(
+        "src/latch.rs",
+        "        let old_state = (*this).state.swap(SET, Ordering::AcqRel);\n        old_state == SLEEPING\n",
+        "        (*this).state.store(SET, Ordering::SeqCst);\n        true\n",
+        edit,
+    )?;
+    source.replace_file("src/sleep/mod.rs", RAYON_SLEEP, edit)
+}
+
+/// What lives as long as the program needs no counts of those who hold it, and is never asked whether it is
+/// there: the player makes the pool before all else.
+fn for_ever(source: &mut Source) -> Result<(), Error> {
+    let edit = "let the pool live for ever";
+    let registry = "src/registry.rs";
+    for file in [
+        "src/latch.rs",
+        "src/scope/mod.rs",
+        "src/spawn/mod.rs",
+        "src/thread_pool/mod.rs",
+        "src/broadcast/mod.rs",
+    ] {
+        source.replace_text(file, "use std::sync::Arc;\n", "use crate::for_ever::Arc;\n", edit)?;
+    }
+    let (old, new) = ("job: Arc<ArcJob<FUNC>>", "job: std::sync::Arc<ArcJob<FUNC>>");
+    source.replace_text("src/scope/mod.rs", old, new, edit)?;
+    source.replace_text(registry, "use std::sync::{Arc, Once};\n", "use crate::for_ever::Arc;\n", edit)?;
+    source.replace_text("src/lib.rs", "mod sleep;\n", RAYON_FOR_EVER, edit)?;
+    for (start, end, new) in [
+        (
+            "static THE_REGISTRY_SET: Once",
+            "/// Starts the worker threads (if that has not already happened). If",
+            "",
+        ),
+        (
+            "    set_global_registry(default_global_registry)\n",
+            "/// Starts the worker threads (if that has not already happened) with\n",
+            "    unsafe { (*ptr::addr_of!(THE_REGISTRY)).as_ref().unwrap_unchecked() }\n}\n\n",
+        ),
+        (
+            "    let mut result = Err(ThreadPoolBuildError::new(\n        ErrorKind::GlobalPool",
+            "fn default_global_registry()",
+            RAYON_SET,
+        ),
+        (
+            "        let previous = self.terminate_count.fetch_add(1, Ordering::AcqRel);",
+            "    /// Signals that the thread pool which owns",
+            "    }\n\n",
+        ),
+        (
+            "        if self.terminate_count.fetch_sub(1, Ordering::AcqRel) == 1 {",
+            "    /// Notify the worker that the latch",
+            "    }\n\n",
+        ),
+        (
+            "        thread_local!(static LOCK_LATCH",
+            "            // This thread isn't a member of *any* thread pool",
+            "        (|l: &LockLatch| {\n",
+        ),
+        (
+            "            job.latch.wait_and_reset();",
+            "    #[cold]\n    unsafe fn in_worker_cross",
+            "            job.latch.wait();\n\n            job.into_result()\n        })(&LockLatch::new())\n    }\n\n",
+        ),
+    ] {
+        source.replace(registry, start, end, new, edit)?;
+    }
+    Ok(())
 }
 
 const RAYON_SPAWN: &str = r#"        unsafe extern "C" {
@@ -127,14 +254,15 @@ const RAYON_SPAWN: &str = r#"        unsafe extern "C" {
         }
 "#;
 
-const RAYON_NEW: &str = r#"        let mut workers = Vec::new();
+const RAYON_NEW: &str = r#"        let mut builder = mem::ManuallyDrop::new(builder);
+        let mut workers = Vec::new();
         let mut thread_infos = Vec::new();
         for _ in 0..n_threads {
             let worker = Worker::new_lifo();
             thread_infos.push(ThreadInfo::new(worker.stealer()));
             workers.push(worker);
         }
-        let registry = mem::ManuallyDrop::new(Arc::new(Registry {
+        let registry = Arc::new(Registry {
             thread_infos,
             sleep: Sleep::new(n_threads),
             injected_jobs: Injector::new(),
@@ -143,7 +271,7 @@ const RAYON_NEW: &str = r#"        let mut workers = Vec::new();
             panic_handler: None,
             start_handler: None,
             exit_handler: None,
-        }));
+        });
         for (index, worker) in workers.into_iter().enumerate() {
             let thread = ThreadBuilder {
                 name: None,
@@ -156,7 +284,7 @@ const RAYON_NEW: &str = r#"        let mut workers = Vec::new();
                 return Err(ThreadPoolBuildError::new(ErrorKind::IOError(e)));
             }
         }
-        Ok(mem::ManuallyDrop::into_inner(registry))
+        Ok(registry)
     }
 
 "#;
@@ -180,4 +308,91 @@ const RAYON_COUNT: &str = r#"            unsafe extern "C" {
             unsafe { sched_getaffinity(0, 1024, set.as_mut_ptr()) };
             let count: u32 = set.iter().map(|word| word.count_ones()).sum();
             (count as usize).max(1)
+"#;
+
+const RAYON_SLEEP: &str = r#"
+use std::sync::{Condvar, Mutex};
+use std::thread;
+
+pub(crate) const THREADS_MAX: usize = u16::MAX as usize;
+
+/// Where those who have nothing to do sleep, and how many do.
+pub(super) struct Sleep {
+    asleep: Mutex<usize>,
+    condvar: Condvar,
+}
+
+impl Sleep {
+    pub(super) fn new(_: usize) -> Sleep {
+        Sleep { asleep: Mutex::new(0), condvar: Condvar::new() }
+    }
+
+    /// Waits a little, and after some rounds until woken, unless there is something to do.
+    pub(super) fn wait(&self, rounds: &mut u32, has_work: impl FnOnce() -> bool) {
+        *rounds += 1;
+        if *rounds < 32 {
+            return thread::yield_now();
+        }
+        let mut asleep = self.asleep.lock().unwrap();
+        if !has_work() {
+            *asleep += 1;
+            asleep = self.condvar.wait(asleep).unwrap();
+            *asleep -= 1;
+        }
+    }
+
+    /// Wakes all, after work or the end of a wait was made known. Who is about to sleep either sees that or
+    /// is counted.
+    #[inline(never)]
+    pub(super) fn wake(&self) {
+        let asleep = self.asleep.lock().unwrap();
+        if *asleep != 0 {
+            self.condvar.notify_all();
+        }
+    }
+}
+"#;
+
+const RAYON_FOR_EVER: &str = r#"mod sleep;
+
+mod for_ever {
+    /// A reference to what is never freed, by the name of what counts its owners.
+    pub(super) struct Arc<T: 'static>(&'static T);
+
+    impl<T> Arc<T> {
+        pub(super) fn new(value: T) -> Self {
+            Arc(Box::leak(Box::new(value)))
+        }
+    }
+
+    impl<T> Clone for Arc<T> {
+        fn clone(&self) -> Self {
+            Arc(self.0)
+        }
+    }
+
+    impl<T> std::ops::Deref for Arc<T> {
+        type Target = T;
+        fn deref(&self) -> &T {
+            self.0
+        }
+    }
+}
+"#;
+
+const RAYON_SET: &str = r#"    registry().map(|registry| unsafe {
+        ptr::addr_of_mut!(THE_REGISTRY).write(Some(registry));
+        global_registry()
+    })
+}
+
+"#;
+
+const RAYON_WAIT: &str = r#"                    let has_work = || latch.probe() || self.has_injected_job();
+                    self.registry.sleep.wait(&mut rounds, has_work);
+                }
+            }
+            break;
+        }
+
 "#;
