@@ -176,6 +176,11 @@ fn a_ball_of_three_pixels_is_never_lost() {
 }
 
 #[test]
+fn a_glint_one_pixel_thick_is_never_lost() {
+    cross(Thing::Glint, Backdrop::Globe);
+}
+
+#[test]
 fn a_small_triangle_is_never_lost() {
     cross(Thing::Triangle, Backdrop::Wall);
 }

@@ -21,6 +21,8 @@ pub enum Thing {
     Triangle,
     /// A shadow three pixels high, of a ball that is out of the picture.
     Shadow,
+    /// A shining rectangle that the backdrop, a mirror, shows about a pixel thick.
+    Glint,
     /// A triangle about four pixels wide, of a mesh.
     Facet,
     /// A shadow three pixels high, of a mesh that is out of the picture.
@@ -84,6 +86,10 @@ pub fn scene(thing: Thing, backdrop: Backdrop, frame: u32, with_thing: bool) -> 
     }
     let lamp = Vec3::new(-4.0, 9.0, 6.0);
     scene.lights.push(Light { position: lamp, colour: Vec3::splat(300.0), kind: LightKind::Point });
+    if thing == Thing::Glint {
+        scene.materials[1] =
+            Material { diffuse: 0.0, f0: Vec3::splat(0.6), reflection: 1.0, ..Material::default() };
+    }
     if !with_thing {
         return scene;
     }
@@ -107,6 +113,10 @@ pub fn scene(thing: Thing, backdrop: Backdrop, frame: u32, with_thing: bool) -> 
         }),
         Thing::Ball => {
             scene.spheres.push(Sphere { centre: at, radius: 1.5 * px, material: 0, blend: 0.0 });
+        }
+        Thing::Glint => {
+            let centre = Vec3::new(7.0 * t, 5.0 - 2.0 * t * t, 5.0);
+            scene.emitters.push(Emitter::facing(centre, Vec3::Y, 0.1, 3.0, Vec3::splat(9.0)));
         }
         Thing::Triangle => scene.triangles.push(Triangle {
             corners: [[-2.0, -1.5, 0.0], [2.0, -1.0, 1.0], [0.0, 2.0, -1.0]]

@@ -5,20 +5,19 @@
 
 use super::refine::Known;
 use crate::render::Stage;
-use crate::trace::Shape;
 use glam::Vec2;
 
 impl Known<'_> {
-    /// Whether the field with index `own`, on which all samples lie, may mirror a rectangle that
+    /// Whether the shape with index `own`, on which all samples lie, may mirror a rectangle that
     /// none of them shows.
     #[inline(never)]
     pub fn may_hide_glint(&self, stage: &Stage, own: usize) -> bool {
         let shape = stage.scene.shape(own);
-        if !matches!(shape, Shape::Field(_)) || stage.scene.materials[shape.material()].reflection <= 0.0 {
+        if shape.is_flat() || stage.scene.materials[shape.material()].reflection <= 0.0 {
             return false;
         }
         stage.scene.emitters.iter().any(|emitter| {
-            let (mut lo, mut hi, mut seen, mut behind) = (Vec2::INFINITY, Vec2::NEG_INFINITY, false, false);
+            let (mut lo, mut hi, mut seen) = (Vec2::INFINITY, Vec2::NEG_INFINITY, false);
             for s in self.samples {
                 let (p, n) = (s.point(), s.normal());
                 let d = p - stage.view.origin;
@@ -26,8 +25,8 @@ impl Known<'_> {
                 let facing = emitter.normal().dot(d);
                 let off = emitter.centre - p;
                 let t = off.dot(emitter.normal()) / facing;
+                // Rays that go away from the plane leave it to the others.
                 if facing >= 0.0 || t <= 0.0 {
-                    behind = true;
                     continue;
                 }
                 let q = d * t - off;
@@ -36,10 +35,8 @@ impl Known<'_> {
                 seen |= at.abs().max_element() < 1.0;
             }
             // Curved, it bulges a little out of the box.
-            let room = (hi - lo) * 0.5;
-            let between = (lo - room).max_element() < 1.0 && (hi + room).min_element() > -1.0;
-            // Rays on both sides of the plane leave no box.
-            !seen && lo.x <= hi.x && (behind || between)
+            let room = (hi - lo) * 0.25;
+            !seen && lo.x <= hi.x && (lo - room).max_element() < 1.0 && (hi + room).min_element() > -1.0
         })
     }
 }

@@ -372,15 +372,12 @@ impl Surroundings {
         if own == usize::MAX {
             return false;
         }
-        if features::FIELDS && known.may_hide_glint(stage, own) {
+        if known.may_hide_glint(stage, own) {
             return true;
         }
         let [points @ .., _] = known.samples.map(|s| s.point());
         // Between the corners a curved surface bulges out of their hull.
-        let flat = matches!(
-            stage.scene.shape(own),
-            Shape::Plane(_) | Shape::Triangle(_) | Shape::Facet(..) | Shape::Voxels(_)
-        );
+        let flat = stage.scene.shape(own).is_flat();
         let across = (points[3] - points[0]).length().max((points[2] - points[1]).length());
         let region = Region::patch(&points, if flat { 0.0 } else { 0.1 * across });
         let material = &stage.scene.materials[stage.scene.shape(own).material()];

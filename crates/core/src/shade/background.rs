@@ -69,12 +69,13 @@ pub fn emitters(list: &[Emitter], rays: &Rays8, spread: F, t: F) -> (V3, F, F) {
         }
         let p = rays.direction * at - c;
         let w = spread * at;
-        let share = covered(p.dot(V3::splat(e.u)), splat(e.half[0]), w)
-            * covered(p.dot(V3::splat(e.v)), splat(e.half[1]), w);
-        let share = front.select(share, F::ZERO);
+        let (x, y) = (p.dot(V3::splat(e.u)), p.dot(V3::splat(e.v)));
+        let (half_x, half_y) = (splat(e.half[0]), splat(e.half[1]));
+        let share = front.select(covered(x, half_x, w) * covered(y, half_y, w), F::ZERO);
         light += V3::splat(e.radiance) * (share * open);
         open *= F::ONE - share;
-        seen += share.simd_gt(splat(0.5)).select(splat((1 << k.min(20)) as f32), F::ZERO);
+        let within = front & x.abs().simd_lt(half_x) & y.abs().simd_lt(half_y);
+        seen += within & splat((1 << k.min(20)) as f32);
     }
     (light, F::ONE - open, seen)
 }

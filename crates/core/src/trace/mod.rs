@@ -217,6 +217,11 @@ impl Shape<'_> {
         }
     }
 
+    /// Whether what of it lies between samples of one surface is flat.
+    pub fn is_flat(&self) -> bool {
+        matches!(self, Shape::Plane(_) | Shape::Triangle(_) | Shape::Facet(..) | Shape::Voxels(_))
+    }
+
     /// Whether its bounds are too loose to say that it shows, or its shadow falls, where they meet.
     pub fn is_loose(&self) -> bool {
         matches!(self, Shape::Voxels(_) | Shape::Field(_))
