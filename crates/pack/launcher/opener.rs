@@ -6,7 +6,7 @@
 //!
 //! A damaged file must end in a sentence and a code other than 0: what is decoded is under a
 //! checksum each time, all decoders always end, and should damage in these few instructions send
-//! them astray, the alarm clock ends the process.
+//! them astray, a signal says the same or the alarm clock ends the process.
 
 #![no_std]
 #![no_main]
@@ -40,6 +40,20 @@ unsafe extern "C" {
 /// Seconds after which an opener that is still busy must be astray.
 const PATIENCE: usize = 5;
 
+/// What the system is told to do on a signal.
+#[repr(C)]
+struct Action {
+    handler: extern "C" fn() -> !,
+    flags: usize,
+    restorer: usize,
+    blocked: usize,
+}
+
+/// Where instructions that make no sense end.
+extern "C" fn astray() -> ! {
+    luc_die(DAMAGED, 3)
+}
+
 /// A word of the file's headers.
 fn word(at: usize) -> usize {
     // SAFETY: the file is loaded there.
@@ -50,6 +64,11 @@ fn word(at: usize) -> usize {
 #[unsafe(no_mangle)]
 unsafe extern "C" fn start(stack: *const usize) -> ! {
     call!(ALARM, PATIENCE);
+    // Nothing returns from there, so there is nothing to restore; but the system insists on the flag.
+    let action = Action { handler: astray, flags: SA_RESTORER, restorer: 0, blocked: 0 };
+    for signal in SIGILL..=SIGSEGV {
+        call!(RT_SIGACTION, signal, &raw const action, 0, SIGNALS);
+    }
     if call!(MMAP, MAIN_AT, MEMORY, READ_WRITE_EXECUTE, PRIVATE_ANONYMOUS_FIXED, NO_FILE, 0) < 0 {
         luc_die(sentence(b": no memory\n\0"), 4);
     }

@@ -8,6 +8,7 @@
 pub const WRITE: usize = 1;
 pub const CLOSE: usize = 3;
 pub const MMAP: usize = 9;
+pub const RT_SIGACTION: usize = 13;
 pub const RT_SIGPROCMASK: usize = 14;
 pub const MADVISE: usize = 28;
 pub const ALARM: usize = 37;
@@ -33,6 +34,10 @@ pub const PRIVATE_ANONYMOUS_FIXED: usize = 0x10_4022;
 pub const NO_FILE: usize = usize::MAX;
 /// Bytes of a set of signals, and something that can't be done with one.
 pub const SIGNALS: usize = 8;
+/// The signals of instructions that lead nowhere are among these, all of which end a process anyway.
+pub const SIGILL: usize = 4;
+pub const SIGSEGV: usize = 11;
+pub const SA_RESTORER: usize = 0x400_0000;
 pub const SENSELESS: usize = 99;
 
 /// A pointer that leads nowhere.
