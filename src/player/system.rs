@@ -1,7 +1,7 @@
 //! Files as the system has them: what `file` needs and no more. Errors are the system's numbers.
 //!
 //! On Unix by the C library's functions: the standard library's own way there, with paths that it copies
-//! and errors that it can put into words, would cost the packed file half a kilobyte.
+//! and errors that it can put into words, would cost the packed file a kilobyte.
 //!
 //! Why the unsafe code is sound: names end with a zero, which every function asserts; buffers are given with
 //! their own lengths; a file is closed once, by its owner.

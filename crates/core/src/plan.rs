@@ -98,7 +98,7 @@ impl Plan {
             (Counter::SmokeCells, scene.smoke.is_some_and(|smoke| smoke.steps > 0)),
             (
                 Counter::SmokeSwirled,
-                scene.smoke.is_some_and(|smoke| smoke.steps > 0 && smoke.rules.air.swirl() > 0.0),
+                scene.smoke.is_some_and(|smoke| smoke.steps > 0 && smoke.rules.air.swirl > 0.0),
             ),
             (Counter::SmokeShown, scene.smoke.is_some()),
             (Counter::SmokeMarched, marches),

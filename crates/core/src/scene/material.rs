@@ -60,7 +60,7 @@ impl Default for Material {
 /// Where each property stands in [`Material::channels`]; colours take three places.
 #[derive(Clone, Copy)]
 #[repr(usize)]
-#[allow(missing_docs)]
+#[allow(missing_docs, reason = "the names say it")]
 pub enum Channel {
     Colour = 0,
     Diffuse = 3,

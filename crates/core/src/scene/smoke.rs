@@ -50,11 +50,12 @@ impl Air {
         let slow = 1.0 - self.drag * Self::SECONDS;
         let (fade, cool) = (1.0 - self.fade * Self::SECONDS, 1.0 - self.cool * Self::SECONDS);
         Motion {
-            keep: [slow, slow, slow, fade, cool, 0.0, 0.0, self.swirl],
+            keep: [slow, slow, slow, fade, cool, 0.0, 0.0, 0.0],
             source: [f32::MIN, f32::MIN, f32::MIN, self.density, self.heat, 0.0, 0.0, 0.0],
             by_density: [x * pace, y * pace, z * pace, 0.0, 0.0, 0.0, 0.0, 0.0],
             by_heat: [0.0, self.lift * pace, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
             sweeps: self.sweeps,
+            swirl: self.swirl,
         }
     }
 }
@@ -62,7 +63,7 @@ impl Air {
 /// How the air moves in a step; lanes as those of a cell's values.
 #[derive(Clone, Copy, Debug)]
 pub struct Motion {
-    /// Factors; in the last lane, which none is for, [`Motion::swirl`].
+    /// Factors.
     pub keep: [f32; 8],
     /// The least values where smoke comes from.
     pub source: [f32; 8],
@@ -72,13 +73,8 @@ pub struct Motion {
     pub by_heat: [f32; 8],
     /// Sweeps of the pressure.
     pub sweeps: u32,
-}
-
-impl Motion {
-    /// Share of the turning of whirls that is given back to them.
-    pub fn swirl(&self) -> f32 {
-        self.keep[7]
-    }
+    /// Share of their turning that is given back to whirls.
+    pub swirl: f32,
 }
 
 /// Smoke in a box. It begins without any, and what it is after so many steps follows from the

@@ -128,9 +128,9 @@ impl State {
             out[SOLID] = f32::from(solid);
         });
         swap(&mut self.cells, &mut self.before);
-        if features::SWIRL && air.swirl() > 0.0 {
+        if features::SWIRL && air.swirl > 0.0 {
             counters.add(Counter::SmokeSwirled, smoke.size.iter().product());
-            self.swirl(&grid, air.swirl());
+            self.swirl(&grid, air.swirl);
         }
 
         let cells = &self.cells;
@@ -163,9 +163,7 @@ impl State {
             *out = quiet(F::new(*out) - lanes(slope)).to_array();
         });
     }
-}
 
-impl State {
     /// Turns whirls faster that transport has slowed: confinement of vorticity (Fedkiw, Stam and Jensen 2001). A
     /// cell is pushed by `share` of N × ω, where ω is the curl of the velocity and N points to where it is
     /// greater.

@@ -137,7 +137,7 @@ impl Rays8 {
 
 /// One shape of any kind.
 #[derive(Clone, Copy)]
-#[allow(missing_docs)]
+#[allow(missing_docs, reason = "the names say it")]
 pub enum Shape<'a> {
     Sphere(&'a Sphere),
     Plane(&'a Plane),
