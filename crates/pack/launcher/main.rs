@@ -37,7 +37,7 @@ const PATIENCE: usize = 60;
 unsafe extern "C" fn _start(stack: *const usize, decoder: &mut Decoder<'static>) -> ! {
     // SAFETY: the packer has put a header there, and the opener has checked it.
     let header = unsafe { &behind };
-    if header.flags & NEEDS_AVX2 != 0 && !has_avx2() {
+    if (cfg!(target_feature = "avx2") || header.flags & NEEDS_AVX2 != 0) && !has_avx2() {
         luc_die(sentence(b": needs a processor with AVX2, and this one has none\n\0"), 2);
     }
     call!(ALARM, PATIENCE);

@@ -106,13 +106,15 @@ fn a_processor_without_avx2_is_told() {
         return;
     }
     let directory = scratch("avx2");
-    let packed = directory.join("packed");
-    let options = Options { method: Method::Raw, name: "luc", needs_avx2: true, progress: luc_pack::silent };
-    write_executable(&packed, &pack_elf_as(program(), &options).unwrap().file).unwrap();
-    let result = run(Command::new("qemu-x86_64").args(["-cpu", "Nehalem"]).arg(&packed)).unwrap();
-    assert_eq!(result.status.code(), Some(2));
-    assert_eq!(result.errors, "luc: needs a processor with AVX2, and this one has none\n");
-    if std::arch::is_x86_feature_detected!("avx2") {
-        assert_eq!(run(&mut Command::new(&packed)).unwrap().status.code(), Some(7));
+    for (name, method) in Method::ALL {
+        let packed = directory.join(name);
+        let options = Options { method, name: "luc", needs_avx2: true, progress: luc_pack::silent };
+        write_executable(&packed, &pack_elf_as(program(), &options).unwrap().file).unwrap();
+        let result = run(Command::new("qemu-x86_64").args(["-cpu", "Nehalem"]).arg(&packed)).unwrap();
+        assert_eq!(result.status.code(), Some(2), "{name}");
+        assert_eq!(result.errors, "luc: needs a processor with AVX2, and this one has none\n", "{name}");
+        if std::arch::is_x86_feature_detected!("avx2") {
+            assert_eq!(run(&mut Command::new(&packed)).unwrap().status.code(), Some(7), "{name}");
+        }
     }
 }

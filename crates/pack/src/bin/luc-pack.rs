@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 const HELP: &str = "\
-luc-pack FILE -o OUT [--method cm|lzma|raw] [--report DIR]
+luc-pack FILE -o OUT [--method cm|lzma|raw] [--avx2] [--report DIR]
 luc-pack --compare FILE...
 
 Packs the x86-64 Linux program FILE into the executable OUT.
@@ -15,6 +15,8 @@ Packs the x86-64 Linux program FILE into the executable OUT.
   -o, --output OUT   where to write
       --method NAME  cm: context mixing, smallest (default); lzma: starts faster;
                      raw: no compression
+      --avx2         the program needs a processor with AVX2: OUT says so on others, and
+                     unpacks faster
       --report DIR   print what each crate, module and function costs packed, and write
                      DIR/report.html, with a map of all bytes; best for a program with symbols
       --compare      print what gzip, zstd, xz, LZMA and context mixing make of the files
@@ -25,6 +27,7 @@ struct Arguments {
     input: PathBuf,
     output: PathBuf,
     method: Method,
+    needs_avx2: bool,
     report: Option<PathBuf>,
 }
 
@@ -63,12 +66,13 @@ fn fail(sentence: &str) -> ExitCode {
 
 fn task() -> Result<Option<Task>, lexopt::Error> {
     let (mut files, mut output, mut method, mut report) = (Vec::new(), None, Method::Cm, None);
-    let mut compares = false;
+    let (mut compares, mut needs_avx2) = (false, false);
     let mut parser = lexopt::Parser::from_env();
     while let Some(argument) = parser.next()? {
         match argument {
             Value(file) if files.is_empty() || compares => files.push(PathBuf::from(file)),
             Long("compare") => compares = true,
+            Long("avx2") => needs_avx2 = true,
             Short('o') | Long("output") => output = Some(parser.value()?.into()),
             Long("method") => {
                 let name = parser.value()?.string()?;
@@ -90,13 +94,14 @@ fn task() -> Result<Option<Task>, lexopt::Error> {
     if report.is_some() && method != Method::Cm {
         return Err("--report tells what context mixing costs: leave out --method".into());
     }
-    Ok(Some(Task::Pack(Arguments { input, output, method, report })))
+    Ok(Some(Task::Pack(Arguments { input, output, method, needs_avx2, report })))
 }
 
 fn pack(arguments: &Arguments) -> Result<String, Error> {
     let file = std::fs::read(&arguments.input).map_err(Error::file(&arguments.input))?;
     let name = arguments.output.file_name().unwrap_or_default().to_string_lossy();
-    let options = Options { method: arguments.method, name: &name, needs_avx2: false, progress: percent };
+    let Arguments { method, needs_avx2, .. } = *arguments;
+    let options = Options { method, name: &name, needs_avx2, progress: percent };
     let packed = pack_elf_as(&file, &options)?;
     write_executable(&arguments.output, &packed.file)?;
     if let Some(directory) = &arguments.report {

@@ -10,7 +10,10 @@ pub mod checksum;
 pub mod filter;
 pub mod format;
 pub mod interval;
+pub mod lanes;
 pub mod logistic;
+pub mod mixers;
+pub mod slots;
 pub mod small;
 pub mod x86;
 

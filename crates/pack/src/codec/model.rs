@@ -13,7 +13,10 @@
 //! Source: Matt Mahoney's paq8 and lpaq1 for the architecture; Fabian Giesen's kkrunchy and Rune
 //! Stubbe's and Aske Christensen's Crinkler for contexts that follow instructions.
 
-use super::logistic::{Four, Stretch, dot, move_along, squash};
+use super::lanes::{Eight, LANES, Reals, Words};
+use super::logistic::Stretch;
+use super::mixers::{Mixers, Place};
+use super::slots::{Slots, Table};
 use super::x86::{Walker, fact, mix};
 
 /// The facts that each context sees; the last one of each has [`LAST`] added.
@@ -66,6 +69,9 @@ const CONTEXTS: usize = {
     assert!(count.is_power_of_two());
     count
 };
+const GROUPS: usize = CONTEXTS / LANES;
+/// Opinions, by eights: four of each context, and one that never changes.
+const INPUTS: usize = 4 * CONTEXTS / 8 + 1;
 
 /// The byte that followed the last five bytes the last time.
 const EXPECTED: usize = fact::OTHERS;
@@ -75,54 +81,49 @@ const ORDER: usize = EXPECTED + 1;
 const PHASE: usize = ORDER + 1;
 const PLACE: usize = PHASE + 1;
 
-/// Mixers.
-const MIXERS: usize = 5;
-/// Sets of weights of each mixer.
-const SETS: usize = 2048;
-/// Slots of all contexts together, as a power of two.
-const SLOT_BITS: u32 = 25;
-
-/// Weight of each opinion at the start.
-const FIRST_WEIGHT: f32 = 0.03;
 /// Learning rate of the mixers in the long run, and what is added to it at the start.
 const RATE: f32 = 0.004;
 const EARLY_RATE: f32 = 0.006;
-/// That of the mixer of mixers.
-const TRUST_RATE: f32 = 0.0008;
 /// A slot's probability stops adapting faster than `1 / SETTLED` after that many bits.
-const SETTLED: u8 = 107;
+const SETTLED: i32 = 107;
 /// Shares by which probabilities move, in 15 bits.
 const MEANING_SHARE: i32 = 280;
 const RUN_SHARE: i32 = 512;
 
-/// What a context remembers of one bit position, or of the byte that came last.
-#[derive(Clone, Copy)]
-struct Slot {
-    /// Probability of a one, 16 bits; or the byte.
-    probability: u16,
-    /// Counts of zeros (bits 6..10) and ones (2..6), and the last two bits.
-    history: u16,
-    /// Tells contexts that share the slot apart, most of the time.
-    check: u8,
-    /// Bits seen, up to [`SETTLED`]; or how often in a row that byte came.
-    seen: u8,
+/// What belongs to a register full of contexts.
+#[repr(C)]
+struct Group {
+    /// The hash of what each sees, for this byte and for this half of it.
+    hash: Words,
+    half: Words,
+    /// What it remembers of this bit.
+    slot: Slots,
+    /// What its history means, and that table's place.
+    meaning: Words,
+    meaning_at: Words,
+    /// What it remembers of the byte that came last: that byte, behind a leading one, and how often in a row
+    /// it came.
+    run: Slots,
+    /// Whether that byte agrees with the bits so far; how probable it is that it comes again, and that table's
+    /// place.
+    agrees: Words,
+    holds: Words,
+    holds_at: Words,
 }
 
-/// What belongs to one context.
+/// Logarithmic odds: four kinds of each context, and one that never changes.
 #[repr(C)]
-struct Context {
-    /// The hash of what it sees, for this byte and for this half of it.
-    hash: u32,
-    half: u32,
-    /// The slot of the byte that came last.
-    run: u32,
-    /// That byte, behind a leading one, and how often in a row it came.
-    expected: u32,
-    times: u32,
-    /// How often it came again: probability.
-    holds: [u16; 32],
-    /// Meaning of histories: probability of a one.
-    meaning: [u16; 1024],
+struct Opinions {
+    of_contexts: [[Reals; GROUPS]; 4],
+    always: Eight,
+}
+
+impl Opinions {
+    #[inline(always)]
+    fn eights(&self) -> &[Eight; INPUTS] {
+        // SAFETY: that's what all are, one behind the other.
+        unsafe { &*(&raw const *self).cast() }
+    }
 }
 
 /// The model. Large; it is never made but by zeroing memory. The small parts come first, where
@@ -132,40 +133,37 @@ pub struct Model {
     walker: Walker,
     /// Bytes done.
     position: u32,
-    opinions: [Four; CONTEXTS + 1],
-    contexts: [Context; CONTEXTS],
-    /// How far the mixers' own weights are from equal ones, by the part of the instruction, and by it and the
-    /// bits of the byte so far.
-    trust: [[f32; MIXERS]; 64],
-    trust_so_far: [[f32; MIXERS]; 64 << 8],
+    /// The last byte, behind a leading one, and the last bit.
+    byte: i32,
+    bit: i32,
+    opinions: Opinions,
+    groups: [Group; GROUPS],
+    /// By context: how often the byte that came last came again, by how often in a row it did before; and
+    /// the probability of a one by history. One more than is read.
+    holds: [u16; CONTEXTS * 32 + 1],
+    meaning: [u16; CONTEXTS * 1024 + 1],
     /// How far a slot's probability moves, by the number of bits seen.
-    shares: [u16; 256],
+    shares: [u16; 257],
     stretch: Stretch,
     followed: [u8; 1 << 16],
-    weights: [[[Four; CONTEXTS + 1]; SETS]; MIXERS],
-    slots: [Slot; 1 << SLOT_BITS],
+    mixers: Mixers<INPUTS>,
+    table: Table,
 }
 
 impl Model {
     /// Makes a model of zeroed memory ready for the first byte.
     pub fn start(&mut self) {
         self.stretch.fill();
-        for context in &mut self.contexts {
-            for (history, probability) in context.meaning.iter_mut().enumerate() {
-                let (zeros, ones) = ((history >> 6) as u32 * 5 + 2, (history >> 2 & 15) as u32 * 5 + 2);
-                *probability = ((ones << 16) / (zeros + ones)) as u16;
-            }
-            context.holds = [0xe000; 32];
+        for (i, probability) in self.meaning.iter_mut().enumerate() {
+            let (zeros, ones) = ((i >> 6 & 15) as u32 * 5 + 2, (i >> 2 & 15) as u32 * 5 + 2);
+            *probability = ((ones << 16) / (zeros + ones)) as u16;
         }
+        self.holds.fill(0xe000);
         for (seen, share) in self.shares.iter_mut().enumerate() {
             *share = (65536 / (seen * 2 + 3)) as u16;
         }
-        for four in self.weights.as_flattened_mut().as_flattened_mut() {
-            *four = Four::all(FIRST_WEIGHT);
-        }
-        if let Some(last) = self.opinions.last_mut() {
-            *last = Four::all(0.4);
-        }
+        self.mixers.start();
+        self.opinions.always = Eight::all(0.28);
     }
 
     /// The next byte. `coder` is told for each bit how likely it is a one, in 16 bits, never quite
@@ -181,10 +179,10 @@ impl Model {
             facts[fact::OPCODE] & 1023,
             facts[fact::BYTES + 2] & 255 | (state as u32 & 7) << 8,
             follower,
+            facts[fact::BYTES] & 255 | (state as u32 & 7) << 8,
         ];
         let rate = RATE + EARLY_RATE / (1.0 + self.position as f32 * (1.0 / 4000.0));
         self.position += 1;
-        let trust = &mut self.trust[state & 63];
 
         // The bits of the byte so far, and of this half of it, behind a leading one.
         let mut byte = 1;
@@ -192,95 +190,115 @@ impl Model {
         for rest in (0..8u32).rev() {
             if rest & 3 == 3 {
                 half = 1;
-                for context in &mut self.contexts {
-                    context.half = mix(context.hash, byte);
-                    fetch(&self.slots, place(context.half, 0));
-                }
             }
-            for (context, opinions) in self.contexts.iter_mut().zip(&mut self.opinions) {
-                let slot = claim(&mut self.slots, context.half, half);
-                let mut four = [0.0; 4];
-                if slot.seen != 0 {
-                    let so_far = self.stretch.of(slot.probability);
-                    four[0] = so_far;
-                    four[1] = self.stretch.of(context.meaning[usize::from(slot.history) & 1023]);
-                    if slot.history & 15 << 6 == 0 || slot.history & 15 << 2 == 0 {
-                        four[2] = so_far;
+            self.learn((rest + 1) & 7, byte);
+            if rest == 7 {
+                self.learn_runs();
+            }
+            for (i, group) in self.groups.iter_mut().enumerate() {
+                let contexts = Words::ORDER + Words::all((i * LANES) as i32);
+                let opinions = &mut self.opinions.of_contexts;
+                // SAFETY: all places are: a context's number times the entries of each, and an entry; 12 bits
+                // of a probability; a number seen.
+                unsafe {
+                    let slot = self.table.load(group.half, half);
+                    let new = slot.seen.equals(Words::all(0));
+                    let at = contexts * Words::all(1024) + (slot.history & Words::all(1023));
+                    let meaning = Words::pairs(&self.meaning, at) & Words::all(0xffff);
+                    let so_far = self.stretch.of_all(slot.probability).as_words().without(new);
+                    let zeros = (slot.history & Words::all(15 << 6)).equals(Words::all(0));
+                    let ones = (slot.history & Words::all(15 << 2)).equals(Words::all(0));
+                    opinions[0][i] = so_far.as_reals();
+                    opinions[1][i] = self.stretch.of_all(meaning).as_words().without(new).as_reals();
+                    opinions[2][i] = (so_far & (zeros | ones)).as_reals();
+                    group.slot = slot;
+                    group.meaning = meaning;
+                    group.meaning_at = at;
+                    if rest == 7 {
+                        group.run = self.table.load(group.half, 0);
                     }
+                    let expected = group.run.probability;
+                    group.agrees = (expected >> (rest + 1)).equals(Words::all(byte));
+                    let at = contexts * Words::all(32) + (group.run.seen & Words::all(31));
+                    group.holds = Words::pairs(&self.holds, at) & Words::all(0xffff);
+                    group.holds_at = at;
+                    let sign = ((expected >> rest) ^ Words::all(1)) << 31;
+                    opinions[3][i] =
+                        ((self.stretch.of_all(group.holds).as_words() ^ sign) & group.agrees).as_reals();
                 }
-                if rest == 7 {
-                    context.run = context.half;
-                    let run = claim(&mut self.slots, context.run, 0);
-                    context.times = u32::from(run.seen);
-                    context.expected = u32::from(run.probability);
-                }
-                if context.expected >> (rest + 1) == byte {
-                    let holds = self.stretch.of(context.holds[context.times as usize & 31]);
-                    four[3] = if context.expected >> rest & 1 != 0 { holds } else { -holds };
-                }
-                *opinions = Four::of(four);
             }
-            let first = &self.contexts[0];
-            sets[1] = byte;
-            if first.expected >> (rest + 1) == byte {
-                sets[1] |= first.times.min(7) * 256;
+            let run = &self.groups[0].run;
+            sets[1] = byte as u32;
+            if run.probability.0[0] >> (rest + 1) == byte {
+                sets[1] |= (run.seen.0[0] as u32).min(7) * 256;
             }
 
-            let so_far = &mut self.trust_so_far[(state & 63) << 8 | byte as usize & 255];
-            let mut mixed = [0.0; MIXERS];
-            let mut mean = 0.0;
-            for i in 0..MIXERS {
-                mixed[i] = dot(&self.weights[i][sets[i] as usize & (SETS - 1)], &self.opinions);
-                mean += mixed[i] * (trust[i] + so_far[i] + 1.0 / MIXERS as f32);
-            }
-            let said = squash(mean);
+            let place = Place { sets, state, byte: byte as usize };
+            let opinions = self.opinions.eights();
+            let mixed = self.mixers.mix(&place, opinions);
             // SAFETY: the product is no less than 0 and less than 65536.
-            let one = unsafe { (said * 65536.0).to_int_unchecked::<i32>() } as u32;
-            let bit = coder(one.clamp(24, 65536 - 24));
+            let one = unsafe { (mixed.said * 65536.0).to_int_unchecked::<i32>() } as u32;
+            let bit = coder(one.clamp(24, 65536 - 24)) as i32;
 
-            let error = (bit as f32 - said) * TRUST_RATE;
-            for i in 0..MIXERS {
-                trust[i] += error * mixed[i];
-                so_far[i] += error * mixed[i];
-                let error = bit as f32 - squash(mixed[i]);
-                // A mixer that is nearly right has little to learn, and time is short.
-                if error.abs() > 0.02 {
-                    move_along(
-                        &mut self.weights[i][sets[i] as usize & (SETS - 1)],
-                        error * rate,
-                        &self.opinions,
-                    );
-                }
-            }
-            for context in &mut self.contexts {
-                let slot = &mut self.slots[place(context.half, half)];
-                if slot.seen != 0 {
-                    toward(&mut context.meaning[usize::from(slot.history) & 1023], bit, MEANING_SHARE);
-                }
-                toward(&mut slot.probability, bit, i32::from(self.shares[usize::from(slot.seen)]));
-                slot.seen += u8::from(slot.seen < SETTLED);
-                slot.history = next_history(slot.history, bit);
-                if context.expected >> (rest + 1) == byte {
-                    let held = u32::from(context.expected >> rest & 1 == bit);
-                    toward(&mut context.holds[context.times as usize & 31], held, RUN_SHARE);
-                }
-            }
+            self.mixers.learn(&place, bit as f32, &mixed, rate, opinions);
+            self.bit = bit;
             sets[0] += 1;
             byte = byte << 1 | bit;
             half = half << 1 | bit;
         }
 
-        for context in &mut self.contexts {
-            let run = &mut self.slots[place(context.run, 0)];
-            if byte != context.expected {
-                run.probability = byte as u16;
-                run.seen = 0;
-            }
-            run.seen += u8::from(run.seen < 31);
-        }
+        self.byte = byte;
         self.followed[usize::from(self.walker.facts[ORDER] as u16)] = byte as u8;
         self.walker.step(byte as u8);
         byte as u8
+    }
+
+    /// Takes the last bit, behind which `rest` were left of its byte, into what the contexts remember, while
+    /// what they will see in the next half of a byte is on its way from memory.
+    #[inline(always)]
+    fn learn(&mut self, rest: u32, byte: i32) {
+        let bit = self.bit;
+        let target = Words::all(-bit & 0xffff);
+        for group in &mut self.groups {
+            if rest & 3 == 0 {
+                group.half = mix_all(group.hash, Words::all(byte));
+                self.table.fetch(group.half);
+            }
+            let slot = &mut group.slot;
+            let new = slot.seen.equals(Words::all(0));
+            let meaning = toward(group.meaning, target, Words::all(MEANING_SHARE));
+            let meaning = new.choose(group.meaning, meaning);
+            // SAFETY: the numbers seen are less than 256.
+            let share = unsafe { Words::pairs(&self.shares, slot.seen) } & Words::all(0xffff);
+            slot.probability = toward(slot.probability, target, share);
+            slot.seen = (slot.seen + Words::all(1)).min(Words::all(SETTLED));
+            slot.history = next_history(slot.history, bit);
+            self.table.store(slot);
+            let bits = group.run.probability >> rest & Words::all(1);
+            let held = bits.equals(Words::all(bit)) & Words::all(0xffff);
+            let holds = toward(group.holds, held, Words::all(RUN_SHARE));
+            let holds = group.agrees.choose(holds, group.holds);
+            for lane in 0..LANES {
+                // SAFETY: as where they were read.
+                unsafe {
+                    *self.meaning.get_unchecked_mut(group.meaning_at.0[lane] as usize) =
+                        meaning.0[lane] as u16;
+                    *self.holds.get_unchecked_mut(group.holds_at.0[lane] as usize) = holds.0[lane] as u16;
+                }
+            }
+        }
+    }
+
+    /// Takes the last byte into what the contexts remember.
+    #[inline(always)]
+    fn learn_runs(&mut self) {
+        for group in &mut self.groups {
+            let run = &mut group.run;
+            let again = run.probability.equals(Words::all(self.byte));
+            run.probability = Words::all(self.byte);
+            run.seen = ((run.seen & again) + Words::all(1)).min(Words::all(31));
+            self.table.store(run);
+        }
     }
 
     /// What the contexts see before the next byte.
@@ -297,10 +315,10 @@ impl Model {
         walker.recall();
         let mut i = 0;
         let mut hash = 0;
-        for entry in SEEN {
+        for &entry in &SEEN {
             hash = mix(hash, walker.facts[usize::from(entry) & 63]);
             if entry >= LAST {
-                self.contexts[i & (CONTEXTS - 1)].hash = hash;
+                self.groups[(i / LANES) & (GROUPS - 1)].hash.0[i & (LANES - 1)] = hash as i32;
                 i += 1;
                 hash = i as u32;
             }
@@ -308,47 +326,28 @@ impl Model {
     }
 }
 
-/// Where a context's slot for this part of the byte is.
-fn place(hash: u32, part: u32) -> usize {
-    (hash >> 7 ^ part & 15) as usize
+/// [`mix`] of eight pairs.
+#[inline(always)]
+fn mix_all(a: Words, b: Words) -> Words {
+    let h = a * Words::all(0x2c1b_3c6d) + b * Words::all(0x9e37_79b1u32 as i32) + Words::all(0x0123_4567);
+    ((h ^ h >> 15) * Words::all(0x85eb_ca6bu32 as i32)) ^ h >> 13
 }
 
-/// That slot, emptied if it was another context's.
-fn claim(slots: &mut [Slot; 1 << SLOT_BITS], hash: u32, part: u32) -> &mut Slot {
-    let slot = &mut slots[place(hash, part)];
-    let check = hash as u8 | 1;
-    if slot.check != check {
-        *slot = Slot { probability: 1 << 15, history: 0, check, seen: 0 };
-    }
-    slot
-}
-
-/// Tells the processor that a row of slots will be read soon, so that it needn't wait for one after
-/// the other.
-fn fetch(slots: &[Slot; 1 << SLOT_BITS], at: usize) {
-    #[cfg(target_arch = "x86_64")]
-    // SAFETY: reads nothing; all x86-64 processors have the instruction.
-    unsafe {
-        use core::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
-        let row = &raw const slots[at & !15];
-        _mm_prefetch::<_MM_HINT_T0>(row.cast());
-        _mm_prefetch::<_MM_HINT_T0>(row.wrapping_add(15).cast());
-    }
-    #[cfg(not(target_arch = "x86_64"))]
-    let _ = (slots, at);
-}
-
-/// Moves a probability of 16 bits toward the bit, by `share` / 32768 of the way.
-fn toward(probability: &mut u16, bit: u32, share: i32) {
-    let old = i32::from(*probability);
-    let target = -(bit as i32) & 0xffff;
-    *probability = (old + (((target - old) * share) >> 15)) as u16;
+/// Moves probabilities of 16 bits toward the target, 0 or 65535, by `share` / 32768 of the way.
+#[inline(always)]
+fn toward(old: Words, target: Words, share: Words) -> Words {
+    old + ((target - old) * share).halved(15)
 }
 
 /// The history after one more bit: its count goes up, and a large count of the other falls to 3, since
 /// what happened lately counts more.
-fn next_history(history: u16, bit: u32) -> u16 {
+#[inline(always)]
+fn next_history(history: Words, bit: i32) -> Words {
     let up = if bit == 1 { 2 } else { 6 };
-    let (same, other) = (history >> up & 15, history >> (8 - up) & 15);
-    (same + 1).min(15) << up | other.min(3) << (8 - up) | history << 1 & 2 | bit as u16
+    let fifteen = Words::all(15);
+    let (same, other) = (history >> up & fifteen, history >> (8 - up) & fifteen);
+    (same + Words::all(1)).min(fifteen) << up
+        | other.min(Words::all(3)) << (8 - up)
+        | (history & Words::all(1)) << 1
+        | Words::all(bit)
 }
