@@ -48,6 +48,7 @@ counters! {
     NodeVisits "nodes of trees",
     FacetTests "tests of facets",
     SmoothFacets "facets with interpolated normals",
+    ImageLookups "look-ups in images",
     EmitterTests "tests of emitters",
     DiscTests "tests of discs",
     Glows "glows in the sky",

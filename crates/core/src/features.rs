@@ -41,6 +41,9 @@ pub const MESHES: bool = cfg!(feature = "meshes");
 /// Meshes with interpolated normals.
 pub const SMOOTH: bool = cfg!(feature = "smooth");
 
+/// Images on meshes.
+pub const IMAGES: bool = cfg!(feature = "images");
+
 /// See [`crate::scene::Pattern::Cells`].
 pub const CELLS: bool = cfg!(feature = "cells");
 /// See [`crate::scene::Pattern::Stripes`].
@@ -84,7 +87,7 @@ pub const EFFECT_TUBE: bool = cfg!(feature = "effect-tube");
 pub const EFFECT_GRAIN: bool = cfg!(feature = "effect-grain");
 
 /// Each feature with the counter that shows it at work.
-pub const ALL: [(&str, Counter); 34] = [
+pub const ALL: [(&str, Counter); 35] = [
     ("ggx", Counter::Ggx),
     ("bumps", Counter::Bumps),
     ("fields", Counter::FieldSteps),
@@ -102,6 +105,7 @@ pub const ALL: [(&str, Counter); 34] = [
     ("points", Counter::PointLights),
     ("meshes", Counter::NodeVisits),
     ("smooth", Counter::SmoothFacets),
+    ("images", Counter::ImageLookups),
     ("cells", Counter::Cells),
     ("stripes", Counter::Stripes),
     ("brick", Counter::Brick),

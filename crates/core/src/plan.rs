@@ -69,6 +69,7 @@ impl Plan {
             (Counter::NodeVisits, !scene.meshes.is_empty()),
             (Counter::FacetTests, !scene.meshes.is_empty()),
             (Counter::SmoothFacets, scene.meshes.instances().iter().any(|i| i.mesh().is_smooth())),
+            (Counter::ImageLookups, scene.meshes.instances().iter().any(|i| i.mesh().skin().is_some())),
             (Counter::ReflectedRays, mirrors),
             (Counter::RefractedRays, glass),
             (Counter::RoughRays, rough),

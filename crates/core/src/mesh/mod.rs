@@ -8,11 +8,14 @@ mod ask;
 mod lathe;
 mod place;
 mod search;
+mod skin;
 #[cfg(test)]
 mod tests;
 
 pub use lathe::lathe;
 pub use place::{Assembly, Instance};
+pub(crate) use skin::on_surface;
+pub use skin::{Image, Skin};
 
 use crate::bvh::{Bounds, LEAF, Tree};
 use crate::features;
@@ -27,6 +30,8 @@ pub struct Mesh {
     /// Normals at the corners, for meshes that stand for something curved; else empty.
     normals: Vec<[Vec3; 3]>,
     tree: Tree,
+    #[cfg(feature = "images")]
+    skin: Option<Skin>,
 }
 
 impl Mesh {
@@ -40,7 +45,27 @@ impl Mesh {
     #[inline(never)]
     pub fn smooth(triangles: Vec<[Vec3; 3]>, normals: Vec<[Vec3; 3]>) -> Mesh {
         let boxes: Vec<Bounds> = triangles.iter().map(|t| Bounds::around(t)).collect();
-        Mesh { tree: Tree::build(&boxes, LEAF), triangles, normals }
+        Mesh {
+            tree: Tree::build(&boxes, LEAF),
+            triangles,
+            normals,
+            #[cfg(feature = "images")]
+            skin: None,
+        }
+    }
+
+    /// The mesh with an image laid over it: a factor on the albedo.
+    #[cfg(feature = "images")]
+    pub fn with_skin(self, skin: Skin) -> Mesh {
+        Mesh { skin: Some(skin), ..self }
+    }
+
+    /// What is laid over it.
+    pub fn skin(&self) -> Option<&Skin> {
+        #[cfg(feature = "images")]
+        return self.skin.as_ref();
+        #[cfg(not(feature = "images"))]
+        None
     }
 
     /// The triangles, in the order of their indices.
@@ -57,6 +82,9 @@ impl Mesh {
     pub fn validate(&self) -> Result<(), &'static str> {
         if self.is_smooth() && self.normals.len() != self.triangles.len() {
             return Err("normals for some triangles only");
+        }
+        if self.skin().is_some_and(|skin| skin.uvs.len() != self.triangles.len()) {
+            return Err("texture coordinates for some triangles only");
         }
         self.tree.validate(&self.triangles.iter().map(|t| Bounds::around(t)).collect::<Vec<_>>())
     }

@@ -311,6 +311,10 @@ fn shade_packet(
         let facets = id.simd_ge(splat(4.0 * scene.shape_count() as f32)) & s.part.simd_ne(F::ZERO);
         counters.add(Counter::SmoothFacets, facets.to_bitmask().count_ones() as usize);
     }
+    if features::IMAGES && cfg!(feature = "counters") {
+        let painted = |&&id: &&f32| id >= 0.0 && scene.is_painted(whole(id) >> 2);
+        counters.add(Counter::ImageLookups, id.as_array().iter().filter(painted).count());
+    }
 
     let offset = s.facing * s.clearance;
     let m = s.value(Channel::Roughness);

@@ -185,6 +185,12 @@ impl Scene {
         let (instance, facet) = self.meshes.facet(i - self.fields.len());
         Shape::Facet(instance, facet)
     }
+
+    /// Whether the shape at `index` is a facet of a mesh that an image is laid over.
+    pub fn is_painted(&self, index: usize) -> bool {
+        features::IMAGES
+            && matches!(self.shape(index), Shape::Facet(instance, _) if instance.mesh().skin().is_some())
+    }
 }
 
 impl Shape<'_> {
