@@ -45,6 +45,7 @@ counters! {
     FieldTests "tests of fields",
     FieldSteps "steps to fields",
     FieldOcclusion "ambient occlusion by fields",
+    FieldShadows "steps in soft shadows by fields",
     NodeVisits "nodes of trees",
     FacetTests "tests of facets",
     SmoothFacets "facets with interpolated normals",

@@ -22,6 +22,8 @@ pub const SMOKE_SHADOWS: bool = cfg!(feature = "smoke-shadows");
 pub const SWIRL: bool = cfg!(feature = "swirl");
 /// Ambient occlusion by fields.
 pub const FIELD_OCCLUSION: bool = cfg!(feature = "field-occlusion");
+/// Soft shadows by fields.
+pub const FIELD_SHADOWS: bool = cfg!(feature = "field-shadows");
 /// Beams of light.
 pub const BEAMS: bool = cfg!(feature = "beams");
 /// Bounds of cylinders without ends; without it their shadows are sought everywhere.
@@ -87,11 +89,12 @@ pub const EFFECT_TUBE: bool = cfg!(feature = "effect-tube");
 pub const EFFECT_GRAIN: bool = cfg!(feature = "effect-grain");
 
 /// Each feature with the counter that shows it at work.
-pub const ALL: [(&str, Counter); 35] = [
+pub const ALL: [(&str, Counter); 36] = [
     ("ggx", Counter::Ggx),
     ("bumps", Counter::Bumps),
     ("fields", Counter::FieldSteps),
     ("field-occlusion", Counter::FieldOcclusion),
+    ("field-shadows", Counter::FieldShadows),
     ("voxels", Counter::VoxelSteps),
     ("smoke", Counter::SmokeShown),
     ("smoke-shadows", Counter::SmokeShadowRays),

@@ -52,7 +52,7 @@ struct Part {
 impl Part {
     /// Whether some normal is not that of its face.
     fn is_smooth(&self) -> bool {
-        let bent = |n: Vec3, face: Vec3| !(n.cross(face).length() <= PARALLEL * n.length() * face.length());
+        let bent = |n: Vec3, face: Vec3| n.cross(face).length() > PARALLEL * n.length() * face.length();
         self.corners.iter().zip(&self.normals).any(|(c, n)| n.iter().any(|&n| bent(n, across(*c))))
     }
 

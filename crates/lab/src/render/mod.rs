@@ -125,8 +125,16 @@ fn text(path: &Path) -> Result<String, String> {
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
+/// A model, with what it is made of.
+struct Loaded {
+    model: Model,
+    materials: Vec<Material>,
+    /// The images of the materials.
+    paints: Vec<Option<Paint>>,
+}
+
 /// Reads a model and the materials that it names, and says what of it can't be drawn.
-fn load(path: &Path, texture: Option<Texture>) -> Result<(Model, Vec<Material>, Vec<Option<Paint>>), String> {
+fn load(path: &Path, texture: Option<Texture>) -> Result<Loaded, String> {
     let fault = |path: &Path| {
         let name = path.display().to_string();
         move |e: String| format!("{name}: {e}")
@@ -158,7 +166,7 @@ fn load(path: &Path, texture: Option<Texture>) -> Result<(Model, Vec<Material>, 
         );
     }
     let materials = told.iter().zip(&paints).map(|(told, paint)| told.material(paint.is_some())).collect();
-    Ok((model, materials, paints))
+    Ok(Loaded { model, materials, paints })
 }
 
 /// Runs the command with the arguments after `render`.
@@ -168,7 +176,7 @@ pub fn run(args: &[String]) -> Result<(), String> {
         return Err("which file? cargo lab render FILE.obj".into());
     }
     let name = options.file.display();
-    let (model, materials, paints) = load(&options.file, options.texture)?;
+    let Loaded { model, materials, paints } = load(&options.file, options.texture)?;
     let begin = Instant::now();
     let body =
         Body::new(&model, &paints, options.normals, options.z_up).map_err(|e| format!("{name}: {e}"))?;
