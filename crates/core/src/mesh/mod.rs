@@ -20,7 +20,7 @@ pub use skin::{Image, Skin};
 use crate::bvh::{Bounds, LEAF, Tree};
 use crate::features;
 use crate::math::Vec3;
-use crate::math::lanes::{LANES, V3};
+use crate::math::lanes::V3;
 
 /// Triangles with a tree over them.
 #[derive(Clone, Debug, Default)]
@@ -90,12 +90,12 @@ impl Mesh {
     }
 }
 
-/// Points of eight triangles, lane by lane.
+/// Points of up to eight triangles, one or more, lane by lane; lanes that are left have those of the first.
 #[inline(never)]
-fn gather(list: &[[Vec3; 3]], index: [usize; LANES]) -> [V3; 3] {
-    let mut out = [V3::ZERO; 3];
-    for (lane, &i) in index.iter().enumerate() {
-        for (points, &p) in out.iter_mut().zip(&list[i]) {
+fn gather(list: &[[Vec3; 3]], index: &[u32]) -> [V3; 3] {
+    let mut out = list[index[0] as usize].map(V3::splat);
+    for (lane, &i) in index.iter().enumerate().skip(1) {
+        for (points, &p) in out.iter_mut().zip(&list[i as usize]) {
             points.set_lane(lane, p);
         }
     }
