@@ -168,6 +168,19 @@ fn images_lie_on_models_by_their_texture_coordinates() {
 }
 
 #[test]
+fn images_of_other_formats_are_read_too() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    write(folder.join("w.obj"), WALL).unwrap();
+    write(folder.join("w.mtl"), "newmtl paint\nPr 1\nmap_Kd a.tga\n").unwrap();
+    // Truevision TGA: two by two texels, blue, green, red, from the upper left.
+    let head = [0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 2, 0, 2, 0, 24, 0x20];
+    let texels = [0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 255];
+    write(folder.join("a.tga"), [&head[..], &texels].concat()).unwrap();
+    assert_eq!(seen(&drawn(folder, &[&["w.obj"], &FACE[..]].concat())), ['r', 'g', 'b', 'w']);
+}
+
+#[test]
 fn without_its_image_a_model_is_drawn_in_its_colours_and_the_line_is_told() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
