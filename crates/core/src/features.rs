@@ -22,6 +22,8 @@ pub const SMOKE_SHADOWS: bool = cfg!(feature = "smoke-shadows");
 pub const SWIRL: bool = cfg!(feature = "swirl");
 /// Ambient occlusion by fields.
 pub const FIELD_OCCLUSION: bool = cfg!(feature = "field-occlusion");
+/// Soft shadows by fields.
+pub const FIELD_SHADOWS: bool = cfg!(feature = "field-shadows");
 /// Beams of light.
 pub const BEAMS: bool = cfg!(feature = "beams");
 /// Bounds of cylinders without ends; without it their shadows are sought everywhere.
@@ -40,6 +42,9 @@ pub const POINTS: bool = cfg!(feature = "points");
 pub const MESHES: bool = cfg!(feature = "meshes");
 /// Meshes with interpolated normals.
 pub const SMOOTH: bool = cfg!(feature = "smooth");
+
+/// Images on meshes.
+pub const IMAGES: bool = cfg!(feature = "images");
 
 /// See [`crate::scene::Pattern::Cells`].
 pub const CELLS: bool = cfg!(feature = "cells");
@@ -84,11 +89,12 @@ pub const EFFECT_TUBE: bool = cfg!(feature = "effect-tube");
 pub const EFFECT_GRAIN: bool = cfg!(feature = "effect-grain");
 
 /// Each feature with the counter that shows it at work.
-pub const ALL: [(&str, Counter); 34] = [
+pub const ALL: [(&str, Counter); 36] = [
     ("ggx", Counter::Ggx),
     ("bumps", Counter::Bumps),
     ("fields", Counter::FieldSteps),
     ("field-occlusion", Counter::FieldOcclusion),
+    ("field-shadows", Counter::FieldShadows),
     ("voxels", Counter::VoxelSteps),
     ("smoke", Counter::SmokeShown),
     ("smoke-shadows", Counter::SmokeShadowRays),
@@ -102,6 +108,7 @@ pub const ALL: [(&str, Counter); 34] = [
     ("points", Counter::PointLights),
     ("meshes", Counter::NodeVisits),
     ("smooth", Counter::SmoothFacets),
+    ("images", Counter::ImageLookups),
     ("cells", Counter::Cells),
     ("stripes", Counter::Stripes),
     ("brick", Counter::Brick),

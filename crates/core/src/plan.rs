@@ -26,6 +26,12 @@ impl Plan {
         let number = |kind| scene.lights.iter().filter(|light| light.kind == kind).count();
         let (plain, fills) = (number(LightKind::Point), number(LightKind::Fill));
         let soft = scene.soft && quality.shadow_samples > 1 && !scene.emitters.is_empty();
+        let lamps_are_hard = fills < scene.lights.len() || (!scene.emitters.is_empty() && !soft);
+        let opaque = |field: &Field| {
+            let first = field.nodes.first().map_or(0, |node| node.material);
+            !field.shadowless && !scene.materials[first].is_transparent()
+        };
+        let penumbra = scene.penumbra() > 0.0 && lamps_are_hard && scene.fields.iter().any(opaque);
         let points = !scene.points.is_empty() && shows;
         let shines = lit || points;
         let chains = quality.depth > 0;
@@ -66,9 +72,11 @@ impl Plan {
             (Counter::FieldTests, !scene.fields.is_empty()),
             (Counter::FieldSteps, !scene.fields.is_empty()),
             (Counter::FieldOcclusion, !scene.fields.is_empty() && scene.occlusion > 0.0),
+            (Counter::FieldShadows, lit && penumbra),
             (Counter::NodeVisits, !scene.meshes.is_empty()),
             (Counter::FacetTests, !scene.meshes.is_empty()),
             (Counter::SmoothFacets, scene.meshes.instances().iter().any(|i| i.mesh().is_smooth())),
+            (Counter::ImageLookups, scene.meshes.instances().iter().any(|i| i.mesh().skin().is_some())),
             (Counter::ReflectedRays, mirrors),
             (Counter::RefractedRays, glass),
             (Counter::RoughRays, rough),

@@ -53,11 +53,12 @@ struct Axis {
 
 impl Axis {
     #[inline(never)]
-    fn new(origin: F, direction: F, room: F) -> Self {
+    fn new(origin: F, direction: F, room: F, single: bool) -> Self {
         let signs = direction.to_bitmask() as u8;
         let inverse = F::ONE / direction;
-        let (lo, hi) = (least(origin) - room, greatest(origin) + room);
-        let (small, big) = (least(inverse), greatest(inverse));
+        let range = |v: F| if single { (v, v) } else { (least(v), greatest(v)) };
+        let ((lo, hi), (small, big)) = (range(origin), range(inverse));
+        let (lo, hi) = (lo - room, hi + room);
         match signs {
             0 => Self { near: 0, origin: [hi, lo], inverse: [small, big] },
             0xff => Self { near: 1, origin: [lo, hi], inverse: [big, small] },
@@ -83,11 +84,12 @@ impl Node {
 
 impl Tree {
     /// Calls `leaf` with the leaves that one of `rays`, or a ray between them, may meet at a
-    /// distance up to `limit`: about the nearest first. It returns the new limit.
+    /// distance up to `limit`: about the nearest first. It returns the new limit. Of a `single` ray, in all
+    /// lanes, no range is to be sought.
     #[inline(never)]
     pub fn walk(
         &self,
-        rays: &Rays8,
+        (rays, single): (&Rays8, bool),
         mut limit: f32,
         stack: &mut Stack,
         counters: &mut Counters,
@@ -99,7 +101,8 @@ impl Tree {
         let Rays8 { origin: o, direction: d } = rays;
         let reach = self.bounds.lo.abs().max(self.bounds.hi.abs()).max_element();
         let room = (greatest(o.max_abs()) + splat(reach)) * splat(1.0 / 1_048_576.0);
-        let axes = [Axis::new(o.x, d.x, room), Axis::new(o.y, d.y, room), Axis::new(o.z, d.z, room)];
+        let axis = |o: F, d: F| Axis::new(o, d, room, single);
+        let axes = [axis(o.x, d.x), axis(o.y, d.y), axis(o.z, d.z)];
         let base = stack.len;
         let mut next = (0, 0.0);
         loop {

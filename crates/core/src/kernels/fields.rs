@@ -49,6 +49,13 @@ pub fn fold(x: f32, side: f32, most: f32) -> f32 {
     first(trace::folded(splat(x), side, most))
 }
 
+/// Share of a lamp of this radius in the middle of which the ray ends, at its origin plus its direction, that a
+/// field leaves to where it begins; 1 for all of it.
+pub fn field_light(ray: &Ray, field: &Field, radius: f32, quality: &Quality) -> f32 {
+    let rays = Rays8 { origin: V3::splat(ray.origin), direction: V3::splat(ray.direction) };
+    first(trace::penumbra(&rays, field, radius, quality, TRUE, &mut Counters::default()))
+}
+
 /// Where a ray meets a field, by sphere tracing with the steps and the epsilon of `quality`.
 pub fn march(ray: &Ray, field: &Field, quality: &Quality) -> Option<f32> {
     let rays = Rays8 { origin: V3::splat(ray.origin), direction: V3::splat(ray.direction) };

@@ -79,7 +79,8 @@ pub use cells::{Visit, walk};
 pub use directions::{basis, cosine_weighted};
 pub use facets::{beckmann, beckmann_of_cosine, ggx, ggx_of_cosine, smith_g1, smith_g2};
 pub use fields::{
-    field_distance, fold, march, repeat, sdf, smooth_intersection, smooth_subtraction, smooth_union,
+    field_distance, field_light, fold, march, repeat, sdf, smooth_intersection, smooth_subtraction,
+    smooth_union,
 };
 pub use media::{Extinction, henyey_greenstein, homogeneous, sample_henyey_greenstein};
 pub use optics::{cos_refracted, fresnel, is_total, refract, schlick};

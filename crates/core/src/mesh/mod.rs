@@ -8,16 +8,19 @@ mod ask;
 mod lathe;
 mod place;
 mod search;
+mod skin;
 #[cfg(test)]
 mod tests;
 
 pub use lathe::lathe;
 pub use place::{Assembly, Instance};
+pub(crate) use skin::on_surface;
+pub use skin::{Image, Skin};
 
 use crate::bvh::{Bounds, LEAF, Tree};
 use crate::features;
 use crate::math::Vec3;
-use crate::math::lanes::{LANES, V3};
+use crate::math::lanes::V3;
 
 /// Triangles with a tree over them.
 #[derive(Clone, Debug, Default)]
@@ -27,6 +30,8 @@ pub struct Mesh {
     /// Normals at the corners, for meshes that stand for something curved; else empty.
     normals: Vec<[Vec3; 3]>,
     tree: Tree,
+    #[cfg(feature = "images")]
+    skin: Option<Skin>,
 }
 
 impl Mesh {
@@ -40,7 +45,27 @@ impl Mesh {
     #[inline(never)]
     pub fn smooth(triangles: Vec<[Vec3; 3]>, normals: Vec<[Vec3; 3]>) -> Mesh {
         let boxes: Vec<Bounds> = triangles.iter().map(|t| Bounds::around(t)).collect();
-        Mesh { tree: Tree::build(&boxes, LEAF), triangles, normals }
+        Mesh {
+            tree: Tree::build(&boxes, LEAF),
+            triangles,
+            normals,
+            #[cfg(feature = "images")]
+            skin: None,
+        }
+    }
+
+    /// The mesh with an image laid over it: a factor on the albedo.
+    #[cfg(feature = "images")]
+    pub fn with_skin(self, skin: Skin) -> Mesh {
+        Mesh { skin: Some(skin), ..self }
+    }
+
+    /// What is laid over it.
+    pub fn skin(&self) -> Option<&Skin> {
+        #[cfg(feature = "images")]
+        return self.skin.as_ref();
+        #[cfg(not(feature = "images"))]
+        None
     }
 
     /// The triangles, in the order of their indices.
@@ -58,16 +83,19 @@ impl Mesh {
         if self.is_smooth() && self.normals.len() != self.triangles.len() {
             return Err("normals for some triangles only");
         }
+        if self.skin().is_some_and(|skin| skin.uvs.len() != self.triangles.len()) {
+            return Err("texture coordinates for some triangles only");
+        }
         self.tree.validate(&self.triangles.iter().map(|t| Bounds::around(t)).collect::<Vec<_>>())
     }
 }
 
-/// Points of eight triangles, lane by lane.
+/// Points of up to eight triangles, one or more, lane by lane; lanes that are left have those of the first.
 #[inline(never)]
-fn gather(list: &[[Vec3; 3]], index: [usize; LANES]) -> [V3; 3] {
-    let mut out = [V3::ZERO; 3];
-    for (lane, &i) in index.iter().enumerate() {
-        for (points, &p) in out.iter_mut().zip(&list[i]) {
+fn gather(list: &[[Vec3; 3]], index: &[u32]) -> [V3; 3] {
+    let mut out = list[index[0] as usize].map(V3::splat);
+    for (lane, &i) in index.iter().enumerate().skip(1) {
+        for (points, &p) in out.iter_mut().zip(&list[i as usize]) {
             points.set_lane(lane, p);
         }
     }

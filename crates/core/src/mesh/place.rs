@@ -108,8 +108,8 @@ impl Instance {
     #[cfg_attr(luc_size, optimize(size))]
     pub fn facets(&self, rays: &Rays8, index: F) -> Facets {
         let last = self.mesh.triangles.len() - 1;
-        let index = index.to_array().map(|i| whole(i).min(last));
-        let corners = gather(&self.mesh.triangles, index);
+        let index = index.to_array().map(|i| whole(i).min(last) as u32);
+        let corners = gather(&self.mesh.triangles, &index);
         let crossing = Aim::new(&self.local(rays)).cross(&corners).unwrap_or(Crossing::NONE);
         let weights = crossing.weights.map(|w| w / crossing.sum);
         let mean = |[a, b, c]: [V3; 3]| a * weights[0] + b * weights[1] + c * weights[2];
@@ -122,7 +122,7 @@ impl Instance {
         let outward = turn((b - a).cross_exact(c - a));
         let mut normal = outward;
         if self.mesh.is_smooth() {
-            let n = turn(mean(gather(&self.mesh.normals, index)));
+            let n = turn(mean(gather(&self.mesh.normals, &index)));
             normal = V3::select(n.dot(outward).simd_gt(F::ZERO), n, outward);
         }
         let w = &self.world_from_mesh;

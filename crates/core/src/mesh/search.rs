@@ -120,7 +120,7 @@ impl Assembly {
         let limit = |best: &Hits| {
             if single { best.t.as_array()[lane_of(lanes)] } else { greatest(best.t).as_array()[0] }
         };
-        self.tree.walk(rays, limit(best), stack, counters, &mut |items, stack, counters| {
+        self.tree.walk((rays, single), limit(best), stack, counters, &mut |items, stack, counters| {
             let instance = &self.instances[items[0] as usize];
             if any && scene.materials[instance.material].is_transparent() {
                 return limit(best);
@@ -141,22 +141,30 @@ impl Assembly {
                 let aim = Aim::new(&ray);
                 let reach =
                     |found: &Hits| if together { greatest(found.t) } else { least(found.t) }.as_array()[0];
-                mesh.tree.walk(&ray, reach(&found), stack, counters, &mut |items, _, counters| {
-                    counters.add(Counter::FacetTests, items.len() * if together { LANES } else { 1 });
-                    if together {
-                        for &item in items {
-                            let corners = mesh.triangles[item as usize].map(V3::splat);
-                            keep(&aim, &corners, splat(first + 4.0 * item as f32), any, &mut found);
+                mesh.tree.walk(
+                    (&ray, !together),
+                    reach(&found),
+                    stack,
+                    counters,
+                    &mut |items, _, counters| {
+                        counters.add(Counter::FacetTests, items.len() * if together { LANES } else { 1 });
+                        if together {
+                            for &item in items {
+                                let corners = mesh.triangles[item as usize].map(V3::splat);
+                                keep(&aim, &corners, splat(first + 4.0 * item as f32), any, &mut found);
+                            }
+                        } else {
+                            // All of the leaf at once; lanes that are left repeat its first.
+                            let mut id = splat(number(items[0] as usize));
+                            for (id, &item) in id.as_mut_array().iter_mut().zip(items) {
+                                *id = number(item as usize);
+                            }
+                            let id = splat(first) + id * splat(4.0);
+                            keep(&aim, &gather(&mesh.triangles, items), id, any, &mut found);
                         }
-                    } else {
-                        // All of the leaf at once; the last lanes repeat its last.
-                        let last = items.len() - 1;
-                        let index = std::array::from_fn(|lane| items[lane.min(last)] as usize);
-                        let id = splat(first) + F::new(index.map(|i| 4.0 * number(i)));
-                        keep(&aim, &gather(&mesh.triangles, index), id, any, &mut found);
-                    }
-                    reach(&found)
-                });
+                        reach(&found)
+                    },
+                );
                 if together {
                     *best = found;
                     break;

@@ -156,7 +156,7 @@ fn the_trees_find_what_testing_everything_does() {
                 HIGH,
                 &[0.0; 2][..scene.spheres.len()],
                 &ends,
-                wanted,
+                (wanted, 0.0),
                 u64::MAX,
                 &mut counters,
             );
@@ -223,7 +223,7 @@ fn a_poisoned_ray_hits_nothing_at_nan_and_leaves_its_neighbours_alone() {
                 let (want, id_want) = (alone.t.to_array()[i], alone.id.to_array()[i]);
                 assert_eq!((t[i], id[i]), (want, id_want), "case {case}, poisoned by {ray:?} in {lane}");
             }
-            occlusion(&scene, HIGH, &[], &rays, TRUE, 0, &mut Counters::default());
+            occlusion(&scene, HIGH, &[], &rays, (TRUE, 0.0), 0, &mut Counters::default());
         }
     }
 }

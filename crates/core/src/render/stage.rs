@@ -172,7 +172,8 @@ impl<'a> Stage<'a> {
         };
         let most = if vague { Rung::Colour } else { self.quality.rung };
         // Nor is the hidden share of a shining rectangle, nor what smoke hides.
-        let soft = (0..self.lamps.len()).any(|lamp| self.shadow_rays(lamp) > 1) || self.volume.is_some();
+        let is_soft = |lamp: usize| self.shadow_rays(lamp) > 1 || self.penumbra(lamp) > 0.0;
+        let soft = (0..self.lamps.len()).any(is_soft) || self.volume.is_some();
         if soft { most.min(Rung::Light) } else { most }
     }
 
@@ -186,6 +187,12 @@ impl<'a> Stage<'a> {
         } else {
             1
         }
+    }
+
+    /// Radius of a lamp in whose light fields cast soft shadows by themselves; 0 where they don't.
+    pub fn penumbra(&self, lamp: usize) -> f32 {
+        let soft = features::FIELD_SHADOWS && !self.scene.fields.is_empty() && self.shadow_rays(lamp) == 1;
+        if soft { self.scene.penumbra() } else { 0.0 }
     }
 
     /// Mask of the shapes that may show in the square of `side` px at `corner`, see

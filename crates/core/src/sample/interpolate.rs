@@ -62,8 +62,9 @@ pub(super) fn fill(
     counters.add(counter, count);
     let record = Record::new(kind, cell.size);
 
-    let textured =
-        first.material(stage).is_some_and(|m| m.texture.is_visible()) || first.voxels(stage).is_some();
+    let textured = first.material(stage).is_some_and(|m| m.texture.is_visible())
+        || first.voxels(stage).is_some()
+        || first.is_painted(stage);
     // Where the colour itself runs smoothly the exact surface would show the same.
     let smooth = equal || known.colour_error() <= stage.quality.tolerance * 0.25;
     let most = match (smooth, textured) {

@@ -298,6 +298,10 @@ impl Known<'_> {
         if !self.same_surface() {
             return false;
         }
+        // Which facet of a curved mesh is seen between samples is not known, and so which part of its image.
+        if self.samples[0].is_painted(stage) && self.samples[0].is_of_smooth_mesh(stage) {
+            return false;
+        }
         // Mirrors magnify relief: between samples farther apart than its cells nothing is known.
         let first = self.samples[0];
         let mirrors = first.material(stage).is_some_and(|m| m.reflection > 0.0);

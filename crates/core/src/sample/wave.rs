@@ -18,7 +18,7 @@ use crate::render::Stage;
 use crate::scene::{Channel, Shading};
 use crate::shade::{self, MAX_LAMPS, Visibility};
 use crate::study::Phase;
-use crate::trace::{Hits, NONE, Rays8, nearest, surface};
+use crate::trace::{BLOCKED, Hits, NONE, Rays8, nearest, surface};
 
 /// Buffers of one thread, reused from tile to tile.
 #[derive(Default)]
@@ -311,6 +311,10 @@ fn shade_packet(
         let facets = id.simd_ge(splat(4.0 * scene.shape_count() as f32)) & s.part.simd_ne(F::ZERO);
         counters.add(Counter::SmoothFacets, facets.to_bitmask().count_ones() as usize);
     }
+    if features::IMAGES && cfg!(feature = "counters") {
+        let painted = |&&id: &&f32| id >= 0.0 && scene.is_painted(whole(id) >> 2);
+        counters.add(Counter::ImageLookups, id.as_array().iter().filter(painted).count());
+    }
 
     let offset = s.facing * s.clearance;
     let m = s.value(Channel::Roughness);
@@ -356,6 +360,8 @@ impl Found {
         for (k, code) in self.block.codes[..stage.lamps.len().min(MAX_LAMPS)].iter().enumerate() {
             // Soft shadows have no edges.
             if stage.shadow_rays(k) == 1 {
+                let soft = code.simd_lt(F::ZERO) & code.simd_gt(splat(BLOCKED));
+                let code = if stage.penumbra(k) > 0.0 { *code & !soft } else { *code };
                 h = mix_x8(h, code.to_bits());
             }
         }

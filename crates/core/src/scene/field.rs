@@ -152,6 +152,30 @@ impl Node {
         Self { join, blend, ..self }
     }
 
+    /// The same in a space that is scaled evenly, turned and moved: where `p` was, `turn * p * scale + offset`
+    /// is. Repeated space stays where it is, so this is for nodes that don't repeat. `turn` is orthonormal,
+    /// `scale` over 0.
+    pub fn placed(self, scale: f32, turn: Mat3, offset: Vec3) -> Self {
+        let form = match self.form {
+            Form::Plane(normal) => Form::Plane(turn * self.axes.map_or(normal, |axes| axes * normal)),
+            Form::Cross(half) => Form::Cross(half * scale),
+            Form::Box(half) => Form::Box(half * scale),
+            Form::Round(sizes) => Form::Round(sizes.map(|size| size * scale)),
+            Form::Swell { amplitude, frequency } => {
+                Form::Swell { amplitude: amplitude * scale, frequency: frequency / scale }
+            }
+        };
+        let is_plane = matches!(form, Form::Plane(_));
+        Self {
+            form,
+            rounding: self.rounding * scale,
+            centre: turn * self.centre * scale + offset,
+            axes: (!is_plane).then(|| turn * self.axes.unwrap_or(Mat3::IDENTITY)),
+            blend: self.blend * scale,
+            ..self
+        }
+    }
+
     /// Greatest slope of the form's own distance.
     fn slope(&self) -> f32 {
         match self.form {

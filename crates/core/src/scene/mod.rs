@@ -128,6 +128,10 @@ pub struct Scene {
     /// Distance up to which fields take ambient light from what is near them, world units; 0 for
     /// not at all.
     pub occlusion: f32,
+    /// Radius of lamps in whose light fields cast soft shadows, world units; 0 for hard ones. Where
+    /// several rays go to a shining rectangle, they tell its shadow instead.
+    #[cfg(feature = "field-shadows")]
+    pub penumbra: f32,
     /// Triangle meshes, placed.
     pub meshes: Assembly,
     /// What shapes are made of; shapes hold indices into this list.
@@ -170,6 +174,14 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// Radius of lamps for the shadows of fields; 0 in builds that can't draw these.
+    pub fn penumbra(&self) -> f32 {
+        #[cfg(feature = "field-shadows")]
+        return self.penumbra;
+        #[cfg(not(feature = "field-shadows"))]
+        0.0
+    }
+
     /// Whether some shape's surface is known between samples, which that of fields is not.
     pub fn has_known_surfaces(&self) -> bool {
         self.shape_count() > self.fields.len() || !self.meshes.is_empty()

@@ -164,8 +164,9 @@ pub fn direct(
         if let (Some(code), Visibility::Trace(candidates)) = (codes.get_mut(k), &visibility) {
             *code = zero;
             let samples = stage.shadow_rays(k);
+            let radius = stage.penumbra(k);
             // Candidates are the shapes that may hide the lamp's middle.
-            let candidates = if samples > 1 { u64::MAX } else { candidates[k] };
+            let candidates = if samples > 1 || radius > 0.0 { u64::MAX } else { candidates[k] };
             if (candidates != 0 || !stage.scene.meshes.is_empty()) && wanted.any() {
                 counters.watch.enter(Phase::Tracing);
                 let (mut hidden, mut open) = (zero, wanted);
@@ -187,7 +188,7 @@ pub fn direct(
                         &stage.quality,
                         &stage.bits,
                         &rays,
-                        open,
+                        (open, radius),
                         candidates,
                         counters,
                     );

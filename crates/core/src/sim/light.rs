@@ -153,7 +153,8 @@ impl<'a> Volume<'a> {
         let count = wanted.to_bitmask().count_ones() as usize;
         counters.add(Counter::SmokeShadowRays, count);
         counters.add_rays(count);
-        let code = occlusion(stage.scene, &stage.quality, &stage.bits, way, wanted, u64::MAX, counters);
+        let code =
+            occlusion(stage.scene, &stage.quality, &stage.bits, way, (wanted, 0.0), u64::MAX, counters);
         tinted(stage, lamp, code) * (splat(gain) + splat(gain) * code.at_most(F::ZERO))
     }
 

@@ -18,7 +18,7 @@ pub type Nodes = [F; Field::MOST];
 
 /// How far beyond a body smooth joins reach, in radii of the join: it is within a quarter of one
 /// where two join, and less than one where more do.
-const REACH: f32 = 1.25;
+pub const REACH: f32 = 1.25;
 
 /// The cell of `side` that `x` lies in, at most `most` from the middle one, and where in it.
 ///

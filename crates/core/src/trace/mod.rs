@@ -7,6 +7,7 @@ mod field;
 mod hit;
 mod occlusion;
 mod pattern;
+mod penumbra;
 mod plane;
 mod ramp;
 mod round;
@@ -24,7 +25,8 @@ mod tests;
 
 pub use field::{ambient_share, distance, field, folded, form, repeated, smooth_min};
 pub use hit::{Hits, NONE, nearest};
-pub use occlusion::{BLOCKED, occlusion};
+pub use occlusion::{BLOCKED, FAINT, occlusion};
+pub use penumbra::penumbra;
 pub use plane::plane;
 pub use ramp::ramp;
 pub use round::{cone, cylinder};
@@ -184,6 +186,12 @@ impl Scene {
         }
         let (instance, facet) = self.meshes.facet(i - self.fields.len());
         Shape::Facet(instance, facet)
+    }
+
+    /// Whether the shape at `index` is a facet of a mesh that an image is laid over.
+    pub fn is_painted(&self, index: usize) -> bool {
+        features::IMAGES
+            && matches!(self.shape(index), Shape::Facet(instance, _) if instance.mesh().skin().is_some())
     }
 }
 

@@ -1,13 +1,18 @@
 //! Whether light reaches a point: blocked by an opaque shape, coloured by transparent ones.
 
-use super::{Hits, NONE, Rays8, Shape};
+use super::{Hits, NONE, Rays8, Shape, penumbra};
 use crate::counters::{Counter, Counters};
-use crate::math::lanes::{F, splat};
+use crate::features;
+use crate::math::lanes::{Bound, F, splat};
 use crate::quality::Quality;
 use crate::scene::{Field, Scene};
 
 /// Visibility code of a lamp that an opaque shape hides.
 pub const BLOCKED: f32 = -1.0;
+
+/// Visibility code of a lamp that is behind fields with all of its disc. They hide it little by little, so it
+/// tells of no edge.
+pub const FAINT: f32 = -1.0 + 1.0 / 16_777_216.0;
 
 /// End of a shadow ray that runs to the lamp: just before it, by four units in the last place.
 const END: f32 = 1.0 - 4.0 / 16_777_216.0;
@@ -16,20 +21,22 @@ const END: f32 = 1.0 - 4.0 / 16_777_216.0;
 ///
 /// Returns per lane [`BLOCKED`], or the sum of `bits[shape]` over the transparent shapes that the
 /// segment crosses. `bits` holds a power of two for each transparent shape and 0 for opaque ones.
-/// Lanes outside `wanted` return anything.
+/// Lanes outside `wanted` return anything. If the lamp has a radius, opaque fields hide a share of it,
+/// which is returned as a number from 0 down to [`FAINT`].
 #[inline(never)]
 pub fn occlusion(
     scene: &Scene,
     quality: &Quality,
     bits: &[f32],
     rays: &Rays8,
-    wanted: F,
+    (wanted, radius): (F, f32),
     candidates: u64,
     counters: &mut Counters,
 ) -> F {
     let (zero, end) = (F::ZERO, splat(END));
     let mut code = F::ZERO;
     let mut open = wanted;
+    let mut seen = F::ONE;
     for (index, &bit) in bits.iter().enumerate() {
         if candidates >> (index & 63) & 1 == 0 {
             continue;
@@ -39,6 +46,10 @@ pub fn occlusion(
             continue;
         }
         counters.add(shape.counter(), 8);
+        if let (true, Shape::Field(field)) = (features::FIELD_SHADOWS && radius > 0.0 && bit == 0.0, shape) {
+            seen = seen.at_most(penumbra(rays, field, radius, quality, open, counters));
+            continue;
+        }
         let span = shape.span(rays, F::ONE, quality, counters);
         if bit > 0.0 {
             counters.add(Counter::ColouredShadows, 8);
@@ -57,6 +68,10 @@ pub fn occlusion(
         let mut hits = Hits { t: end, id: splat(NONE) };
         scene.meshes.search(scene, rays, open, true, &mut hits, counters);
         open &= hits.t.simd_gt(zero);
+    }
+    if features::FIELD_SHADOWS {
+        let hidden = (seen - F::ONE).at_least(splat(FAINT));
+        code = hidden.simd_lt(zero).select(hidden, code);
     }
     (wanted & !open).select(splat(BLOCKED), code)
 }

@@ -14,6 +14,7 @@ use crate::counters::{Counter, Counters};
 use crate::features;
 use crate::math::lanes::{Bound, F, V3, splat};
 use crate::math::whole;
+use crate::mesh::on_surface;
 use crate::quality::Quality;
 use crate::scene::{Channel, Field, Join, Material, Pattern, Scene, Sphere};
 
@@ -207,6 +208,7 @@ pub fn surface(scene: &Scene, quality: &Quality, rays: &Rays8, t: F, id: F, spre
         }
         let mut material = shape.material();
         let mut shade = F::ONE;
+        let mut paint = None;
         let (point, outward, normal, scale) = match shape {
             Shape::Voxels(grid) if features::VOXELS => {
                 let face = on_voxels(grid, p, rays.direction, part, t * spread);
@@ -226,6 +228,10 @@ pub fn surface(scene: &Scene, quality: &Quality, rays: &Rays8, t: F, id: F, spre
                 let facets = instance.facets(rays, (id - splat(first)) * splat(0.25));
                 for (uv, of_facets) in s.uv.iter_mut().zip(facets.uv) {
                     *uv = mask.select(of_facets, *uv);
+                }
+                if let (true, Some(skin)) = (features::IMAGES, instance.mesh().skin()) {
+                    let width = on_surface(t * spread, facets.outward, rays.direction);
+                    paint = Some(instance.painted(skin, (id - splat(first)) * splat(0.25), facets.uv, width));
                 }
                 if instance.mesh().is_smooth() {
                     s.part = mask.select(id ^ splat(first), s.part);
@@ -249,6 +255,16 @@ pub fn surface(scene: &Scene, quality: &Quality, rays: &Rays8, t: F, id: F, spre
                 for lane in s.material[first as usize..].iter_mut().take(3) {
                     *lane *= factor;
                 }
+            }
+        }
+        if let (true, Some(paint)) = (features::IMAGES, paint) {
+            let white = V3::splat(crate::math::Vec3::ONE);
+            // What is neither diffuse nor glass is metal, whose colour is that of its mirror.
+            let metal = material.diffuse <= 0.0 && !material.is_transparent();
+            let first = if metal { Channel::F0 } else { Channel::Colour } as usize;
+            let factor = V3::select(mask, paint, white);
+            for (lane, factor) in s.material[first..].iter_mut().zip([factor.x, factor.y, factor.z]) {
+                *lane *= factor;
             }
         }
         burn(material, mask, &mut s);

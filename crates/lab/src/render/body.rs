@@ -1,9 +1,13 @@
-//! A model as meshes: one for each material, of unit size and standing on the floor.
+//! A model as meshes: one for each material (two, if its image is laid over some faces only), of unit size and
+//! standing on the floor.
 
+use super::image::Paint;
 use super::mtl::Told;
 use super::obj::Model;
+use glam::Vec2;
 use luc_core::math::{Mat3, Vec3};
-use luc_core::mesh::{Assembly, Instance, Mesh};
+use luc_core::mesh::{Assembly, Instance, Mesh, Skin};
+use luc_core::scene::Texture;
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -34,6 +38,37 @@ pub struct Body {
     pub top: f32,
 }
 
+/// Sine of the angle between normals that are one.
+const PARALLEL: f32 = 1e-3;
+
+/// What becomes a mesh, triangle by triangle.
+#[derive(Default)]
+struct Part {
+    corners: Vec<[Vec3; 3]>,
+    normals: Vec<[Vec3; 3]>,
+    uvs: Vec<[Vec2; 3]>,
+}
+
+impl Part {
+    /// Whether some normal is not that of its face.
+    fn is_smooth(&self) -> bool {
+        let bent = |n: Vec3, face: Vec3| n.cross(face).length() > PARALLEL * n.length() * face.length();
+        self.corners.iter().zip(&self.normals).any(|(c, n)| n.iter().any(|&n| bent(n, across(*c))))
+    }
+
+    fn mesh(self, paint: Option<&Paint>) -> Mesh {
+        let mesh = if self.is_smooth() {
+            Mesh::smooth(self.corners, self.normals)
+        } else {
+            Mesh::flat(self.corners)
+        };
+        match paint {
+            Some(paint) => mesh.with_skin(Skin { image: paint.image.clone(), uvs: self.uvs }),
+            None => mesh,
+        }
+    }
+}
+
 /// Three points around a face, its normal as long as twice its area.
 fn across([a, b, c]: [Vec3; 3]) -> Vec3 {
     (b - a).cross(c - a)
@@ -41,8 +76,13 @@ fn across([a, b, c]: [Vec3; 3]) -> Vec3 {
 
 impl Body {
     /// The model with its greatest half side 1, in the middle over the origin, with its least y 0. `z_up`
-    /// turns models whose third axis points up.
-    pub fn new(model: &Model, normals: Normals, z_up: bool) -> Result<Body, String> {
+    /// turns models whose third axis points up. `paints` are the images of the model's materials.
+    pub fn new(
+        model: &Model,
+        paints: &[Option<Paint>],
+        normals: Normals,
+        z_up: bool,
+    ) -> Result<Body, String> {
         if model.triangles.is_empty() {
             return Err("there are no faces in it".into());
         }
@@ -67,25 +107,35 @@ impl Body {
             Normals::Smooth => smoothed(&corners),
             _ => Vec::new(),
         };
-        let mut lists = vec![(Vec::new(), Vec::new()); model.materials.len()];
+        let mut parts: Vec<[Part; 2]> = model.materials.iter().map(|_| Default::default()).collect();
         for (i, (told, &corners)) in model.triangles.iter().zip(&corners).enumerate() {
-            let list = &mut lists[told.material];
+            let paint = paints.get(told.material).and_then(Option::as_ref).zip(told.uv);
+            let part = &mut parts[told.material][paint.is_some() as usize];
             let flat = [across(corners); 3];
             let own = match normals {
                 Normals::File => told.normal.map_or(flat, |n| n.map(|n| turn(model.normals[n]))),
                 Normals::Flat => flat,
                 Normals::Smooth => smooth[i],
             };
-            list.0.push(corners);
-            list.1.push(own);
+            part.corners.push(corners);
+            part.normals.push(own);
+            if let Some((paint, uv)) = paint {
+                let at = |i: usize| {
+                    let [u, v] = model.uvs[i];
+                    Vec2::new(u, v) * Vec2::from(paint.scale) + Vec2::from(paint.offset)
+                };
+                part.uvs.push(uv.map(at));
+            }
         }
-        let given = normals == Normals::Smooth
-            || normals == Normals::File && model.triangles.iter().any(|t| t.normal.is_some());
-        let mesh = |(material, (triangles, normals)): (usize, (Vec<_>, Vec<_>))| {
-            let mesh = if given { Mesh::smooth(triangles, normals) } else { Mesh::flat(triangles) };
-            (Arc::new(mesh), material)
-        };
-        let meshes = lists.into_iter().enumerate().filter(|(_, list)| !list.0.is_empty()).map(mesh).collect();
+        let mut meshes = Vec::new();
+        for (material, [plain, painted]) in parts.into_iter().enumerate() {
+            let paint = paints.get(material).and_then(Option::as_ref);
+            for (part, paint) in [(plain, None), (painted, paint)] {
+                if !part.corners.is_empty() {
+                    meshes.push((Arc::new(part.mesh(paint)), material));
+                }
+            }
+        }
         let points: Vec<Vec3> = corners.into_iter().flatten().collect();
         let top = points.iter().map(|p| p.y).fold(0.0, f32::max);
         Ok(Body { meshes, points, top })
@@ -100,12 +150,12 @@ impl Body {
     }
 }
 
-/// What is said about each of a model's materials, in its order.
-pub fn told(model: &Model, libraries: &[Told]) -> Vec<Told> {
+/// What is said about each of a model's materials, in its order. Of what nothing is said wears `texture`.
+pub fn told(model: &Model, libraries: &[Told], texture: Texture) -> Vec<Told> {
     let of = |name: &String| {
         // Of two with one name the later counts.
         let found = libraries.iter().rev().find(|told| told.name == *name);
-        found.cloned().unwrap_or_else(|| Told::new(name))
+        found.cloned().unwrap_or_else(|| Told { texture, ..Told::new(name) })
     };
     model.materials.iter().map(of).collect()
 }
@@ -138,7 +188,7 @@ mod tests {
     #[test]
     fn a_model_is_of_unit_size_and_stands_on_the_floor() {
         for (normals, z_up) in [(Normals::File, false), (Normals::Smooth, true)] {
-            let body = Body::new(&Model::read(CUBE).unwrap(), normals, z_up).unwrap();
+            let body = Body::new(&Model::read(CUBE).unwrap(), &[], normals, z_up).unwrap();
             let (lo, hi) = body
                 .points
                 .iter()
@@ -154,14 +204,14 @@ mod tests {
             );
             for (mesh, _) in &body.meshes {
                 mesh.validate().unwrap();
-                assert_eq!(mesh.is_smooth(), normals == Normals::Smooth);
+                assert!(!mesh.is_smooth(), "all its normals are those of its faces");
             }
         }
     }
 
     #[test]
     fn edges_of_a_cube_stay_sharp_and_those_of_a_ball_go() {
-        let cube = Body::new(&Model::read(CUBE).unwrap(), Normals::Flat, false).unwrap();
+        let cube = Body::new(&Model::read(CUBE).unwrap(), &[], Normals::Flat, false).unwrap();
         let corners: Vec<[Vec3; 3]> = cube.points.chunks(3).map(|c| [c[0], c[1], c[2]]).collect();
         for (t, normals) in corners.iter().zip(smoothed(&corners)) {
             for n in normals {
@@ -183,7 +233,7 @@ mod tests {
         for (text, words) in
             [("", "no faces"), ("v 1 1 1\nf 1 1 1\n", "one point"), ("v 0 0 0\nl 1 1\n", "no faces")]
         {
-            let said = Body::new(&Model::read(text).unwrap(), Normals::File, false).err().unwrap();
+            let said = Body::new(&Model::read(text).unwrap(), &[], Normals::File, false).err().unwrap();
             assert!(said.contains(words), "{said}");
         }
     }

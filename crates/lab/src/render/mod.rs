@@ -3,6 +3,7 @@
 //! The OBJ reader is our own: every fault has its line, and no file makes it panic.
 
 mod body;
+mod image;
 mod mtl;
 mod obj;
 mod polygon;
@@ -11,12 +12,13 @@ mod studio;
 use crate::metric::Picture;
 use crate::png_file;
 use body::{Body, Normals};
+use image::{Images, Paint};
 use lexopt::prelude::*;
 use luc_core::quality::Quality;
 use luc_core::render::Renderer;
-use luc_core::scene::Material;
+use luc_core::scene::{Material, Pattern, Texture};
 use mtl::Told;
-use obj::Model;
+use obj::{Corners, Model};
 use std::fs::{create_dir_all, read};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -38,6 +40,28 @@ struct Options {
     height: f32,
     z_up: bool,
     floor: bool,
+    texture: Option<Texture>,
+}
+
+/// What bodies wear of which no file tells what they are made of: fine grain.
+const GRAIN: Texture = Texture { pattern: Pattern::Noise, scale: 24.0, grain: 0.15, bump: 0.0 };
+
+/// A pattern by its name, cells and relief in proportion to a model of unit size.
+fn texture(name: &str) -> Result<Texture, String> {
+    let (pattern, scale, grain, bump) = match name {
+        "none" => (Pattern::Noise, 1.0, 0.0, 0.0),
+        "noise" => (Pattern::Noise, 12.0, 0.5, 0.01),
+        "cells" => (Pattern::Cells, 7.0, 0.5, 0.03),
+        "stripes" => (Pattern::Stripes, 8.0, 0.5, 0.0),
+        "brick" => (Pattern::Brick, 4.0, 0.5, 0.02),
+        "scratches" => (Pattern::Scratches, 5.0, 0.4, 0.01),
+        _ => {
+            return Err(format!(
+                "a texture is none, noise, cells, stripes, brick or scratches, not '{name}'"
+            ));
+        }
+    };
+    Ok(Texture { pattern, scale, grain, bump })
 }
 
 fn options(args: &[String]) -> Result<Options, lexopt::Error> {
@@ -53,6 +77,7 @@ fn options(args: &[String]) -> Result<Options, lexopt::Error> {
         height: 18.0,
         z_up: false,
         floor: true,
+        texture: None,
     };
     while let Some(arg) = parser.next()? {
         match arg {
@@ -79,6 +104,7 @@ fn options(args: &[String]) -> Result<Options, lexopt::Error> {
                     _ => Err(format!("up is y or z, not '{text}'")),
                 })?;
             }
+            Long("texture") => options.texture = Some(parser.value()?.parse_with(texture)?),
             Long("no-floor") => options.floor = false,
             Short('o') => options.out = Some(parser.value()?.into()),
             Value(file) if options.file.as_os_str().is_empty() => options.file = file.into(),
@@ -99,8 +125,16 @@ fn text(path: &Path) -> Result<String, String> {
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
+/// A model, with what it is made of.
+struct Loaded {
+    model: Model,
+    materials: Vec<Material>,
+    /// The images of the materials.
+    paints: Vec<Option<Paint>>,
+}
+
 /// Reads a model and the materials that it names, and says what of it can't be drawn.
-fn load(path: &Path) -> Result<(Model, Vec<Material>), String> {
+fn load(path: &Path, texture: Option<Texture>) -> Result<Loaded, String> {
     let fault = |path: &Path| {
         let name = path.display().to_string();
         move |e: String| format!("{name}: {e}")
@@ -110,15 +144,29 @@ fn load(path: &Path) -> Result<(Model, Vec<Material>), String> {
     for (line, name) in &model.libraries {
         let file = path.with_file_name(name);
         match text(&file) {
-            Ok(text) => libraries.extend(Told::read(&text).map_err(fault(&file))?),
+            Ok(text) => libraries.extend(Told::read(&file, &text).map_err(fault(&file))?),
             Err(e) => eprintln!("lab: {}: line {line}: without materials ({e})", path.display()),
         }
     }
-    let told = body::told(&model, &libraries);
-    if told.iter().any(|told| told.image) {
-        eprintln!("lab: images on surfaces are not drawn, only colours");
+    let mut told = body::told(&model, &libraries, GRAIN);
+    if let Some((told, (line, name))) = told.iter().find_map(|told| Some((told, told.other.as_ref()?))) {
+        eprintln!("lab: {}: line {line}: of images only map_Kd is drawn, no {name}", told.library.display());
     }
-    Ok((model, told.iter().map(Told::material).collect()))
+    if let Some(texture) = texture {
+        told.iter_mut().for_each(|told| told.texture = texture);
+    }
+    let mut images = Images::default();
+    let paints: Vec<Option<Paint>> = told.iter().map(|told| images.of(told)).collect();
+    let bare = |told: &Corners| told.uv.is_none() && paints[told.material].is_some();
+    let bare = model.triangles.iter().filter(|told| bare(told)).count();
+    if bare > 0 {
+        eprintln!(
+            "lab: {}: {bare} triangles without texture coordinates go without their images",
+            path.display()
+        );
+    }
+    let materials = told.iter().zip(&paints).map(|(told, paint)| told.material(paint.is_some())).collect();
+    Ok(Loaded { model, materials, paints })
 }
 
 /// Runs the command with the arguments after `render`.
@@ -128,9 +176,10 @@ pub fn run(args: &[String]) -> Result<(), String> {
         return Err("which file? cargo lab render FILE.obj".into());
     }
     let name = options.file.display();
-    let (model, materials) = load(&options.file)?;
+    let Loaded { model, materials, paints } = load(&options.file, options.texture)?;
     let begin = Instant::now();
-    let body = Body::new(&model, options.normals, options.z_up).map_err(|e| format!("{name}: {e}"))?;
+    let body =
+        Body::new(&model, &paints, options.normals, options.z_up).map_err(|e| format!("{name}: {e}"))?;
     let built = begin.elapsed();
     let turn = options.turn + options.frame.map_or(0.0, |n| studio::turned(n, ROUND));
     let pose = Pose { turn, height: options.height, steady: options.frame.is_some() };

@@ -12,6 +12,9 @@ const FOV: f32 = 0.6;
 /// Share of the picture that the model fills.
 const FILLED: f32 = 0.82;
 
+/// How far under the model the floor lies: models that bring their own would share its plane.
+const BELOW: f32 = 2e-3;
+
 /// Positions around the model that a turning camera must see all of it from.
 const AROUND: u32 = 48;
 
@@ -116,7 +119,7 @@ pub fn scene(body: &Body, materials: &[Material], pose: &Pose, size: (u32, u32),
             ..Material::DEFAULT
         };
         scene.planes.push(Plane {
-            point: Vec3::ZERO,
+            point: Vec3::NEG_Y * BELOW,
             normal: Vec3::Y,
             reach: 60.0,
             material: scene.materials.len(),
@@ -146,7 +149,7 @@ mod tests {
     #[test]
     fn all_of_a_model_is_in_view_and_it_fills_the_picture() {
         let text = "v -3 0 0\nv 9 1 0\nv 0 7 2\nv 1 0 -5\nf 1 2 3\nf 1 2 4\n";
-        let body = Body::new(&Model::read(text).unwrap(), Normals::Flat, false).unwrap();
+        let body = Body::new(&Model::read(text).unwrap(), &[], Normals::Flat, false).unwrap();
         for (size, turn, height, steady) in [
             ((1280, 720), 30.0, 20.0, false),
             ((300, 900), 200.0, -10.0, false),

@@ -113,6 +113,27 @@ fn values_are_finite_for_odd_data_and_far_away() {
 }
 
 #[test]
+fn a_field_that_is_scaled_turned_and_moved_has_the_same_values_times_the_scale() {
+    let mut random = Random::new(714);
+    for case in 0..4_000 {
+        let field = Field { cell: Vec3::ZERO, ..any_field(&mut random) };
+        let (scale, offset) = (random.size(-2, 2), random.vector(-2, 2));
+        let y = random.direction();
+        let (x, z) = y.any_orthonormal_pair();
+        let turn = Mat3::from_cols(x, y, z);
+        let place = |node: &Node| node.placed(scale, turn, offset);
+        let placed = Field { nodes: field.nodes.iter().map(place).collect(), ..field.clone() };
+        let p = random.vector(-2, 2);
+        let (a, b) = (at(&field, p) * scale, at(&placed, turn * p * scale + offset));
+        let slope = field.lipschitz();
+        let rounding = 1e-5 * slope * (scale * (1.0 + p.length()) + offset.length());
+        assert!((a - b).abs() <= rounding, "case {case}: {a} {b} {field:?} {placed:?} {p:?}");
+        let off = (placed.lipschitz() - slope).abs();
+        assert!(off <= 1e-5 * slope, "slopes stay: {slope} {}", placed.lipschitz());
+    }
+}
+
+#[test]
 fn shares_sum_to_one() {
     let mut random = Random::new(712);
     for _ in 0..5_000 {

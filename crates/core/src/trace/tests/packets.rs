@@ -78,7 +78,7 @@ fn found(stage: &Stage, rays: &Rays8) -> Vec<[u32; 8]> {
     let counters = &mut Counters::default();
     let hits = nearest(scene, &Quality::PRESETS[3].1, rays, u64::MAX, counters);
     let solid = hits.id.simd_ge(F::ZERO);
-    let shadow = occlusion(scene, &Quality::PRESETS[3].1, &stage.bits, rays, TRUE, u64::MAX, counters);
+    let shadow = occlusion(scene, &Quality::PRESETS[3].1, &stage.bits, rays, (TRUE, 0.0), u64::MAX, counters);
     let s = surface(
         scene,
         &Quality::PRESETS[3].1,
@@ -163,7 +163,7 @@ fn poisoned_rays_neither_panic_nor_hit_at_nan() {
                 &Quality::PRESETS[3].1,
                 &stage.bits,
                 &rays,
-                TRUE,
+                (TRUE, 0.0),
                 u64::MAX,
                 &mut Counters::default(),
             );
@@ -187,8 +187,16 @@ fn row(glass: &[bool], lamp: f32) -> f32 {
     };
     let stage = Stage::new(&scene, &Quality::named("high").unwrap(), 8, 8);
     let rays = packet(|| (Vec3::ZERO, Vec3::Z * lamp));
-    occlusion(&scene, &Quality::PRESETS[3].1, &stage.bits, &rays, TRUE, u64::MAX, &mut Counters::default())
-        .to_array()[3]
+    occlusion(
+        &scene,
+        &Quality::PRESETS[3].1,
+        &stage.bits,
+        &rays,
+        (TRUE, 0.0),
+        u64::MAX,
+        &mut Counters::default(),
+    )
+    .to_array()[3]
 }
 
 #[test]
@@ -223,7 +231,7 @@ fn what_the_lamp_sits_on_does_not_hide_it() {
             &Quality::PRESETS[3].1,
             &[0.0],
             &rays,
-            TRUE,
+            (TRUE, 0.0),
             u64::MAX,
             &mut Counters::default(),
         );
