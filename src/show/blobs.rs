@@ -175,7 +175,7 @@ pub fn scene(frame: u64) -> Scene {
     scene.occlusion = 1.6;
     let target = Vec3::new(0.75 + 0.15 * swing(t, 13.0, 0.0), 0.45, 0.0);
     // Round the mercury and over it, so that the lattice slides behind it.
-    let from = Vec3::new(-0.3 - 0.27 * swing(t, 16.0, 0.0), 0.02 + 0.16 * swing(t, 9.0, 0.0), 0.93);
+    let from = Vec3::new(-0.3 - 0.27 * swing(t, 16.0, 0.0), 0.02 + 0.16 * swing(t, 10.0, 0.0), 0.93);
     scene.camera = Camera {
         position: target + from * track(&DISTANCE, t),
         target,
