@@ -7,6 +7,7 @@ mod kernels {
     mod cells;
     pub mod draw;
     mod formulas;
+    mod hard;
     mod odd;
     mod packets;
     mod shapes;
