@@ -295,14 +295,16 @@ fn thin_bodies_far_from_the_origin_are_hit() {
     for stream in streams(1) {
         let mut random = Random::new(1000 * stream + 70);
         for _ in 0..10_000 {
-            let far = Vec3::new(random.signed(8, 20), random.range(-1.0, 1.0), random.range(-1.0, 1.0));
-            let (axis, size, k) = (random.direction(), random.size(-12, -2), random.size(-6, 1));
-            let height = size * random.size(0, 8);
-            let rays = packet(|| {
-                let origin = far + random.direction() * (height * random.size(-2, 2));
-                let aim = axis * (height * random.range(0.05, 0.95)) - (origin - far);
-                (origin, aim.normalize_or(axis))
-            });
+            let x = random.size(8, 20);
+            let far = Vec3::new(x, random.range(-1.0, 1.0), random.range(-1.0, 1.0));
+            // About as long as the grain of x.
+            let height = (x.next_up() - x) * random.size(-3, 4);
+            let (axis, size, k) = (random.direction(), height * random.size(-8, 0), random.size(-6, 0));
+            let origin = far + random.direction() * (height * random.size(0, 8));
+            let end = if random.one_in(2) { 0.01 } else { 0.99 };
+            let direction = (axis * (height * end) - (origin - far)).normalize_or(axis);
+            // Alone: a body is far if it is for all rays.
+            let rays = packet(|| (origin, direction));
             judge_cylinder(&mut bars, &bar(far, axis, size, height), &rays);
             judge_cone(&mut hats, &frustum(far, axis, k, [0.0, height], [true; 2]), &rays);
         }
