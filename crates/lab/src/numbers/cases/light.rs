@@ -213,6 +213,18 @@ pub const KERNELS: &[Kernel] = &[
             sum.lost()
         }
     ),
+    kernel!(
+        "even medium",
+        homogeneous,
+        Measure::Ulp,
+        |random| list([&[random.size(-40, 6), random.size(-10, 10)]]),
+        |x, _| {
+            let (sigma, t) = (f64::from(x[0]), f64::from(x[1]));
+            -exact_exp_m1(-sigma * t) / sigma
+        },
+        |x| kernels::homogeneous(x[0], x[1]),
+        |x| extinction::reach(x[0], x[1])
+    ),
 ];
 
 /// D from two vectors, as the engine's packets have it.
