@@ -324,7 +324,7 @@ fn rays_through_the_tip_hit() {
         let s = frustum(apex, axis, random.size(-3, 3), [0.0, 1.0], [random.one_in(2), true]);
         let rays = packet(|| {
             let side = axis.any_orthogonal_vector() * s.slope * random.range(-0.9, 0.9);
-            let d = (axis + side).normalize() * if random.one_in(2) { 1.0 } else { -1.0 };
+            let d = crate::math::normalize(axis + side) * if random.one_in(2) { 1.0 } else { -1.0 };
             (apex - d * random.size(-2, 4), d)
         });
         let (t, part) = cone(&rays, &s).first();
@@ -363,8 +363,8 @@ fn random_cones() {
                     let lift = 1.0 + if random.one_in(2) { random.signed(-20, 1) } else { 0.0 };
                     let inwards = if random.one_in(3) { random.range(0.0, 1.0) } else { 1.0 };
                     let target = s.apex + axis * height + out * (height * k * lift * inwards);
-                    let along = if random.one_in(2) { axis } else { (axis + out * k).normalize() };
-                    random.ray(target, (out - axis * k).normalize(), along, h * k.min(1.0))
+                    let along = if random.one_in(2) { axis } else { crate::math::normalize(axis + out * k) };
+                    random.ray(target, crate::math::normalize(out - axis * k), along, h * k.min(1.0))
                 });
                 judge_cone(&mut tally, &s, &rays);
             }
@@ -415,7 +415,7 @@ fn rays_along_the_side_through_the_tip() {
             let rays = packet(|| {
                 let any = random.direction();
                 let out = (any - axis * any.dot(axis)).normalize_or(axis.any_orthogonal_vector());
-                let d = (axis + out * k).normalize() + random.direction() * random.signed(-28, -22);
+                let d = crate::math::normalize(axis + out * k) + random.direction() * random.signed(-28, -22);
                 let d = if random.one_in(2) { d } else { -d };
                 (s.apex + d * (h * random.signed(-6, 6)), d)
             });
