@@ -117,7 +117,8 @@ fn is_far(
     half < f32::INFINITY && !rays.near_ball(middle, (half * half + rim * rim).sqrt() + room)
 }
 
-/// Where `rays` cross the cylinder.
+/// Where `rays` cross the cylinder, closed by its ends. Score at most 4, as [`kernels`](crate::kernels) defines it, with the
+/// way to the base counted twice. Own expansion; the q-form is Kahan's.
 pub fn cylinder(rays: &Rays8, s: &Cylinder) -> Span {
     if is_far(rays, s.base, s.axis, [0.0, s.length], s.radius) {
         return Span::MISS;
@@ -136,7 +137,8 @@ pub fn cylinder(rays: &Rays8, s: &Cylinder) -> Span {
     clip(&ray, side, hit, range, [true; 2])
 }
 
-/// Where `rays` cross the cone.
+/// Where `rays` cross the cone, of a slope over 0. Score at most 4, as [`kernels`](crate::kernels) defines it, with the way
+/// to the apex counted twice. Own expansion; the q-form is Kahan's.
 pub fn cone(rays: &Rays8, s: &Cone) -> Span {
     if is_far(rays, s.apex, s.axis, s.range, s.range[1] * s.slope) {
         return Span::MISS;
