@@ -110,7 +110,7 @@ pub const KERNELS: &[Kernel] = &[
         }
     ),
     kernel!(
-        "drawn about a normal, cosine",
+        "drawn about a normal",
         cosine,
         // Three products, each of two rounded numbers.
         Measure::Unit(|_, _| 3.0),
