@@ -11,4 +11,5 @@ mod kernels {
     mod odd;
     mod packets;
     mod shapes;
+    mod wide;
 }

@@ -1,6 +1,6 @@
 //! Microfacets: how many there are and how much of them is seen.
 
-use super::{cross_wide, dot_wide, first, wide};
+use super::{cross_wide, dot_wide, first, in_f64 as wide};
 use crate::math::lanes::{F, splat};
 use crate::math::lanes_f64::{in_f64, splat_d};
 use crate::math::scalar::exp_wide;

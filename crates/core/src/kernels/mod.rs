@@ -9,6 +9,8 @@
 //! two, which changes no bit, brings it to 1 and the distances back. And [`ggx`], [`beckmann`] and [`refract`], of
 //! which f32 can't hold 4 ulp, are f64 inside; what their packets lose stands with each.
 //!
+//! The shapes stand in [`wide`] once more, f64 inside and within 1 ulp: second implementations, for who needs them.
+//!
 //! | here | packets | source |
 //! |---|---|---|
 //! | [`sphere`], [`plane`], [`cylinder`], [`capped_cylinder`], [`cone`], [`capped_cone`], [`triangle`] | the same names in [`trace`](crate::trace) | with each |
@@ -77,6 +79,7 @@ mod fields;
 mod media;
 mod optics;
 mod shapes;
+pub mod wide;
 
 pub use crate::math::quadratic::roots as quadratic;
 pub use crate::math::scalar;
@@ -105,7 +108,7 @@ fn first(lanes: F) -> f32 {
 }
 
 /// A vector in f64, in which products of its coordinates are exact.
-fn wide(v: glam::Vec3) -> [f64; 3] {
+fn in_f64(v: glam::Vec3) -> [f64; 3] {
     v.to_array().map(f64::from)
 }
 

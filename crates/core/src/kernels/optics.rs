@@ -1,6 +1,6 @@
 //! How one ray splits at a surface.
 
-use super::{cross_wide, dot_wide, first, wide};
+use super::{cross_wide, dot_wide, first, in_f64 as wide};
 use crate::math::lanes::{V3, splat};
 use crate::shade::{self, dielectric};
 use glam::Vec3;
