@@ -1,8 +1,8 @@
 //! Rays against shapes in f64, rounded once: for one ray that needs more than f32 has.
 //!
 //! The same arguments and results as the doors of the same names, within 1 ulp where those score up to 4, and hits just
-//! where there are any: an eye 1 mm over a planet, a wire 1000 km away. Distances next to the origin, where the exact
-//! result all but cancels, are within 2⁻⁵⁰ of the sizes. Axes and normals count by their directions, whatever
+//! where there are any: an eye 1 mm over a planet, a wire 1000 km away. Where the exact result all but cancels, as for
+//! rays that begin on the surface, it is that of a shape changed by 2⁻⁵⁰ of sizes and distance. Axes and normals count by their directions, whatever
 //! rounding left of their lengths. Formulas as in `trace`: discriminants factored from cross products, roots q/A and
 //! C/q (Haines, Günther and Akenine-Möller, Ray Tracing Gems ch. 7; Kahan; own expansion for the cone).
 
