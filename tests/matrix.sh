@@ -5,8 +5,9 @@
 #   tests/matrix.sh          all builds that this machine can make and run; says what is missing
 #   tests/matrix.sh NAME...  only these
 #
-# Targets come from `rustup target add NAME`; aarch64 also wants gcc-aarch64-linux-gnu, libc6-dev-arm64-cross
-# and qemu-user, musl wants musl-tools.
+# Targets come from `rustup target add NAME`, or are made with the program by a compiler that has its library's source
+# (rustup's rust-src, or Debian's rustc-web, cargo-web and rust-web-src). aarch64 also wants gcc-aarch64-linux-gnu,
+# libc6-dev-arm64-cross and qemu-user, and takes a quarter of an hour; musl wants musl-tools.
 set -uo pipefail
 cd "$(dirname "$0")/.."
 all=(release sse2 fma native unoptimised packed musl aarch64)
@@ -29,11 +30,22 @@ build() {
     fi
 }
 
-# Whether a compiled standard library and a command are there.
+# Whether there is a compiled standard library, and a command.
+has_library() {
+    [ -d "$(rustc --print sysroot)/lib/rustlib/$1/lib" ] || { echo "-- no library for $1"; return 1; }
+}
 has() {
-    local triple=$1 tool=$2
-    [ -d "$(rustc --print sysroot)/lib/rustlib/$triple/lib" ] || { echo "-- no library for $triple"; return 1; }
-    command -v "$tool" >/dev/null || { echo "-- no $tool"; return 1; }
+    command -v "$1" >/dev/null || { echo "-- no $1"; return 1; }
+}
+
+# Where a compiler lies that has its library's source.
+with_source() {
+    local rustc root
+    for rustc in rustc /usr/bin/rustc; do
+        root=$("$rustc" --print sysroot 2>/dev/null) || continue
+        [ -f "$root/lib/rustlib/src/rust/library/std/Cargo.toml" ] && echo "$root" && return
+    done
+    return 1
 }
 
 for name in "${wanted[@]}"; do
@@ -55,14 +67,23 @@ for name in "${wanted[@]}"; do
             fi
             ;;
         musl)
-            has x86_64-unknown-linux-musl musl-gcc || continue
+            has_library x86_64-unknown-linux-musl && has musl-gcc || continue
             CC_x86_64_unknown_linux_musl=musl-gcc build musl "-Ctarget-feature=+avx2" --release \
                 --target x86_64-unknown-linux-musl ;;
         aarch64)
-            has aarch64-unknown-linux-gnu aarch64-linux-gnu-gcc && has aarch64-unknown-linux-gnu qemu-aarch64 || continue
-            CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_LINKER=aarch64-linux-gnu-gcc \
-            CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_RUNNER="qemu-aarch64 -L /usr/aarch64-linux-gnu" \
-                build aarch64 "" --release --target aarch64-unknown-linux-gnu ;;
+            has aarch64-linux-gnu-gcc && has qemu-aarch64 || continue
+            export CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_LINKER=aarch64-linux-gnu-gcc
+            export CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_RUNNER="qemu-aarch64 -L /usr/aarch64-linux-gnu"
+            if has_library aarch64-unknown-linux-gnu; then
+                build aarch64 "" --release --target aarch64-unknown-linux-gnu
+            elif root=$(with_source); then
+                echo "-- made with the program by the compiler in $root"
+                PATH=$root/bin:$PATH RUSTC=$root/bin/rustc RUSTC_BOOTSTRAP=1 build aarch64 "" --release \
+                    -Zbuild-std=std,panic_abort --target aarch64-unknown-linux-gnu
+            else
+                echo "-- no source of a standard library"
+            fi
+            ;;
         *) echo "no build of this name: ${all[*]}"; exit 2 ;;
     esac
 done

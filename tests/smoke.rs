@@ -153,7 +153,7 @@ fn a_clear_pane_before_or_in_smoke_changes_nothing() {
             let eye = behind.camera.position;
             let way = Vec3::new(3.0, 1.0, -1.0) - eye;
             let base = eye + way * share;
-            let axis = way.normalize();
+            let axis = luc_core::math::normalize(way);
             behind.cylinders.push(Cylinder { base, axis, radius: 9.0, length: 0.01, material: 0 });
             behind.materials.push(clear);
             let (off, db) = worst(&seen, &draw(&behind, &quality));
@@ -279,12 +279,14 @@ fn bodies_cast_shadows_on_smoke_that_asks_for_them() {
     let mut wall = open.clone();
     let (lamp, eye) = (RULES.lamps[1], open.camera.position);
     let to = Vec3::new(3.0, 1.0, -1.0) - lamp;
-    let side = Vec3::new(-to.z, 0.0, to.x).normalize();
+    let side = luc_core::math::normalize(Vec3::new(-to.z, 0.0, to.x));
     let edge = lamp + to * 0.1;
     let corners = [edge + Vec3::Y, edge - Vec3::Y, edge + side];
     wall.triangles.push(Triangle { corners, material: 0 });
     wall.materials.push(Material::default());
-    let straight = |p: Vec3| (p - eye).normalize().dot((Vec3::new(3.0, 1.0, -1.0) - eye).normalize());
+    let straight = |p: Vec3| {
+        luc_core::math::normalize(p - eye).dot(luc_core::math::normalize(Vec3::new(3.0, 1.0, -1.0) - eye))
+    };
     assert!(corners.iter().all(|&p| straight(p) < 0.92), "it is out of the picture");
     let (half, _) = frame(&wall);
     let light = |picture: &Picture| picture.pixels.iter().map(|&p| i64::from(channels(p)[2])).sum::<i64>();

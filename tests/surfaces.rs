@@ -36,7 +36,7 @@ fn shore() -> Scene {
         ..Material::default()
     };
     let stop = |y, colour| Stop { y, colour };
-    let direction = Vec3::new(0.1, 0.12, -1.0).normalize();
+    let direction = luc_core::math::normalize(Vec3::new(0.1, 0.12, -1.0));
     let mut scene = Scene {
         camera: Camera {
             position: Vec3::new(-1.0, 1.3, 7.0),

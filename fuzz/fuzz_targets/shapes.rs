@@ -4,7 +4,7 @@
 
 use glam::Vec3;
 use libfuzzer_sys::fuzz_target;
-use luc_core::kernels::{self, Crossing, Ray};
+use luc_core::kernels::{self, Crossing, Ray, wide};
 
 /// The floats that the bytes hold, zeros after them.
 fn floats(data: &[u8]) -> [f32; 20] {
@@ -34,6 +34,13 @@ fuzz_target!(|data: &[u8]| {
     sound("capped cylinder", kernels::capped_cylinder(&ray, v(6), axis, x[12], x[13]));
     sound("cone", kernels::cone(&ray, v(6), axis, x[12]));
     sound("capped cone", kernels::capped_cone(&ray, v(6), axis, x[12], [x[13], x[14]]));
+    sound("sphere in f64", wide::sphere(&ray, v(6), x[12]));
+    sound("cylinder in f64", wide::cylinder(&ray, v(6), axis, x[12]));
+    sound("capped cylinder in f64", wide::capped_cylinder(&ray, v(6), axis, x[12], x[13]));
+    sound("cone in f64", wide::cone(&ray, v(6), axis, x[12]));
+    sound("capped cone in f64", wide::capped_cone(&ray, v(6), axis, x[12], [x[13], x[14]]));
+    assert!(wide::triangle(&ray, [v(6), v(9), v(12)]).is_none_or(|h| h.t > 0.0 && h.t < f32::INFINITY));
+    assert!(wide::slab(&ray, v(6), v(9)).is_none_or(|t| !t[0].is_nan() && !t[1].is_nan()));
     assert!(kernels::plane(&ray, v(6), axis).is_none_or(|t| t > 0.0 && t < f32::INFINITY));
     assert!(kernels::triangle(&ray, [v(6), v(9), v(12)]).is_none_or(|h| h.t > 0.0 && h.t < f32::INFINITY));
     assert!(kernels::slab(&ray, v(6), v(9)).is_none_or(|t| !t[0].is_nan() && !t[1].is_nan()));
@@ -41,8 +48,8 @@ fuzz_target!(|data: &[u8]| {
     // Within the range that squares allow, a hit is near the ball.
     let sane = |x: f32| x == 0.0 || (1e-6..1e6).contains(&x.abs());
     if let (Some(found), true) = (ball, x[..9].iter().all(|&x| sane(x)) && (1e-4..1e6).contains(&x[12])) {
-        let wide = |v: Vec3| v.to_array().map(f64::from);
-        let (o, d, c) = (wide(ray.origin), wide(ray.direction), wide(v(6)));
+        let exact = |v: Vec3| v.to_array().map(f64::from);
+        let (o, d, c) = (exact(ray.origin), exact(ray.direction), exact(v(6)));
         let t = f64::from(found.first());
         let length = |v: [f64; 3]| (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
         let off = length([0, 1, 2].map(|i| o[i] + d[i] * t - c[i]));

@@ -8,7 +8,7 @@ use super::score;
 use super::still::{Lamp, Still};
 use luc_core::math::hash::{hash2, unit};
 use luc_core::math::scalar::sin_cos;
-use luc_core::math::{Mat3, Vec3, number};
+use luc_core::math::{Mat3, Vec3, normalize, number};
 use luc_core::mesh::{Assembly, Instance, Mesh, lathe};
 use luc_core::scene::*;
 use luc_core::synth::track::{Strikes, pulse, strikes};
@@ -56,7 +56,7 @@ impl Dice {
 /// A crystal that leans: a body of six sides and a pointed tip.
 pub fn crystal(out: &mut Triangles, foot: Vec3, axis: Vec3, [radius, tip]: [f32; 2], turn: f32) {
     let neck = foot + axis;
-    lathe(out, &[(foot, radius), (neck, radius * 0.8), (neck + axis.normalize() * tip, 0.0)], 6, turn);
+    lathe(out, &[(foot, radius), (neck, radius * 0.8), (neck + normalize(axis) * tip, 0.0)], 6, turn);
 }
 
 /// A point of the arch at a share of the way up, from the pier's axis, moved outwards.
@@ -287,7 +287,7 @@ pub fn scene(frame: u64) -> Scene {
     let mut s = STILL.scene();
     s.camera = Camera { position, target, roll: degrees(track(&ROLL, t)), fov: angle(54.0) };
     for glow in &mut s.background.glows {
-        glow.direction = (ROSE - position).normalize();
+        glow.direction = normalize(ROSE - position);
         glow.colour *= 1.0 + 0.4 * pulse(&KICK, frame, 7.0);
     }
     s.lights[1].position += position;

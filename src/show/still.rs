@@ -1,7 +1,7 @@
 //! What of a part stands still, as a table: numbers in a table pack in half the bytes of code that
 //! writes them. For each frame a scene is made of the table, and the part puts what moves in place.
 
-use luc_core::math::Vec3;
+use luc_core::math::{Vec3, normalize};
 use luc_core::scene::*;
 
 /// The still of a part. What it doesn't name is as in [`Still::NOTHING`].
@@ -63,12 +63,12 @@ impl Still {
             kind: match lamp.spot {
                 None => LightKind::Point,
                 Some((target, [inner, outer])) => {
-                    LightKind::Spot { direction: (target - lamp.position).normalize(), inner, outer }
+                    LightKind::Spot { direction: normalize(target - lamp.position), inner, outer }
                 }
             },
         };
         let emitter = |p: &Panel| Emitter::facing(p.centre, p.target, p.size[0], p.size[1], p.radiance);
-        let glow = |g: &Glow| Glow { direction: g.direction.normalize(), ..*g };
+        let glow = |g: &Glow| Glow { direction: normalize(g.direction), ..*g };
         Scene {
             background: Background {
                 stops: self.stops.to_vec(),

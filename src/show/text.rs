@@ -4,7 +4,7 @@
 //! lines of a pen. A beam looks the brighter the more one looks along it; its colour makes up for that,
 //! so that words that lie on a floor are as even as words that stand.
 
-use luc_core::math::{Vec3, cross};
+use luc_core::math::{Vec3, cross, normalize};
 use luc_core::scene::Beam;
 
 /// After each space a letter's name, and the points of its lines, x and y; a comma lifts the pen, but as a name
@@ -76,7 +76,7 @@ pub fn write(beams: &mut Vec<Beam>, line: &Line, eye: Vec3, mut shown: f32) {
                 wide = step(a).max(wide);
                 if let Some(from) = pen.replace(to) {
                     let along: Vec3 = to - from;
-                    let sine = cross(along.normalize_or(Vec3::X), (to - eye).normalize()).length();
+                    let sine = cross(along.normalize_or(Vec3::X), normalize(to - eye)).length();
                     let colour = line.colour * (shown.min(1.0) * sine);
                     beams.push(Beam { from, to, width: line.width, colour, fade: 0.0 });
                 }

@@ -73,7 +73,7 @@ pub fn scene(thing: Thing, backdrop: Backdrop, frame: u32, with_thing: bool) -> 
         }
         Backdrop::Wall => scene.planes.push(Plane {
             point: Vec3::new(0.0, 0.0, -1.0),
-            normal: Vec3::new(0.2, 0.1, 1.0).normalize(),
+            normal: luc_core::math::normalize(Vec3::new(0.2, 0.1, 1.0)),
             reach: f32::INFINITY,
             material: 1,
         }),
@@ -106,7 +106,7 @@ pub fn scene(thing: Thing, backdrop: Backdrop, frame: u32, with_thing: bool) -> 
         }
         Thing::EndlessBar => scene.cylinders.push(Cylinder {
             base: at,
-            axis: Vec3::new(0.3 - 0.5 * t, 0.8, -0.3).normalize(),
+            axis: luc_core::math::normalize(Vec3::new(0.3 - 0.5 * t, 0.8, -0.3)),
             radius: 0.55 * px,
             length: f32::INFINITY,
             material: 0,
@@ -160,7 +160,7 @@ fn ground(backdrop: Backdrop, direction: Vec3) -> Vec3 {
         Backdrop::Dark | Backdrop::Floor => plane(FLOOR, Vec3::Y),
         Backdrop::Wall => plane(Vec3::new(0.0, 0.0, -1.0), Vec3::new(0.2, 0.1, 1.0)),
         Backdrop::Globe => {
-            let (d, o) = (direction.normalize(), EYE - Vec3::new(0.0, 1.0, -2.0));
+            let (d, o) = (luc_core::math::normalize(direction), EYE - Vec3::new(0.0, 1.0, -2.0));
             let b = d.dot(o);
             let root = (b * b - o.length_squared() + 2.5 * 2.5).max(0.0).sqrt();
             EYE + d * (-b - root)

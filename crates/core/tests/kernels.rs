@@ -7,7 +7,9 @@ mod kernels {
     mod cells;
     pub mod draw;
     mod formulas;
+    mod hard;
     mod odd;
     mod packets;
     mod shapes;
+    mod wide;
 }

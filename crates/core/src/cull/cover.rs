@@ -40,7 +40,7 @@ pub fn may_cover(stage: &Stage, index: usize, centre: Vec2, half: Vec2, depths: 
 #[cfg_attr(luc_size, optimize(size))]
 pub fn ball_may_cover(c: Vec3, radius: f32, centre: Vec2, half: Vec2, deepest: f32) -> bool {
     let reach = half.length();
-    let front = nearest_in_cone(c, radius, Vec3::from(centre.extend(1.0)).normalize(), reach);
+    let front = nearest_in_cone(c, radius, crate::math::normalize(Vec3::from(centre.extend(1.0))), reach);
     let widest = centre.length() + reach;
     front / (1.0 + widest * widest).sqrt() < deepest * 1.000_01
 }

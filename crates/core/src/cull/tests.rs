@@ -231,13 +231,17 @@ fn the_nearest_distance_in_a_cone_is_a_lower_bound() {
         if c.length() <= r {
             continue;
         }
-        let e = if random.one_in(4) { e } else { (c.normalize() + e * (reach + r / c.length())).normalize() };
+        let e = if random.one_in(4) {
+            e
+        } else {
+            crate::math::normalize(crate::math::normalize(c) + e * (reach + r / c.length()))
+        };
         let least = nearest_in_cone(c, r, e, reach);
         let rays = packet(|| {
             let any = random.direction();
             let side = (any - e * any.dot(e)).normalize_or(e.any_orthogonal_vector());
             let sine = reach.min(1.0) * random.range(0.0, 1.0);
-            (Vec3::ZERO, (e * ((1.0 - sine) * (1.0 + sine)).sqrt() + side * sine).normalize())
+            (Vec3::ZERO, crate::math::normalize(e * ((1.0 - sine) * (1.0 + sine)).sqrt() + side * sine))
         });
         let (t, id) = hits(&scene, &rays);
         for lane in 0..8 {

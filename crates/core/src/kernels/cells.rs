@@ -25,7 +25,8 @@ pub struct Visit {
 pub fn walk(ray: &Ray, size: [usize; 3]) -> Vec<Visit> {
     let mut visits = Vec::new();
     let size = size.map(|n| n.min(Voxels::MOST) as f32);
-    let rays = ray.packet();
+    let packet = ray.packet();
+    let rays = &packet.rays;
     let (room, hi) = (Vec3::splat(crate::trace::ROOM), Vec3::from_array(size));
     // What is farther is so by a level direction only.
     let (begin, end) = rays.in_box(-room, hi + room, splat(1e25));
@@ -37,7 +38,7 @@ pub fn walk(ray: &Ray, size: [usize; 3]) -> Vec<Visit> {
         let place = cell.map(first);
         let inside = (0..3).all(|axis| place[axis] >= 0.0 && place[axis] < size[axis]);
         if inside && first(leave) > 0.0 {
-            visits.push(Visit { cell: place.map(|x| x as i32), enter: first(enter) });
+            visits.push(Visit { cell: place.map(|x| x as i32), enter: packet.length(first(enter)) });
         }
         // Also ends where a number is NaN.
         if !(first(begin) <= first(end) && first(leave) < first(end)) {

@@ -1,8 +1,9 @@
 //! Microfacets: how many there are and how much of them is seen.
 
-use super::first;
-use crate::math::lanes::{Bound, F, V3, splat};
+use super::{cross_wide, dot_wide, first, in_f64 as wide};
+use crate::math::lanes::{F, splat};
 use crate::math::lanes_f64::{in_f64, splat_d};
+use crate::math::scalar::exp_wide;
 use crate::shade;
 use glam::Vec3;
 use std::f64::consts::FRAC_1_PI;
@@ -20,11 +21,12 @@ fn per_steradian(d: F) -> f32 {
 /// GGX's distribution D, per steradian, of facets with unit normal `h` about the unit normal `n`; `alpha` is
 /// the square of a material's roughness, at least 1e-4. Trowbridge and Reitz; Walter et al. 2007.
 ///
-/// From n × h: the rounding of `n` and `h` themselves alone is left, some 4 u / alpha near the peak.
+/// In f64 and rounded once: error at most 1 ulp for the angle between the two, whatever rounding left of their
+/// lengths. Packets take n × h and [`shade::distribution`] in f32, which loses some 4 u / alpha near the peak.
 pub fn ggx(n: Vec3, h: Vec3, alpha: f32) -> f32 {
-    let (n, h) = (V3::splat(n), V3::splat(h));
-    let across = n.cross(h);
-    per_steradian(shade::distribution(across.dot(across), n.dot(h), splat(alpha)))
+    let ([sine2, cos], alpha) = (angle(n, h), f64::from(alpha));
+    let q = alpha / (sine2 + alpha * cos * (alpha * cos));
+    (q * q * FRAC_1_PI) as f32
 }
 
 /// The same from the cosine n·h, 0..=1. Error at most 4 ulp.
@@ -47,21 +49,33 @@ pub fn smith_g2(n_l: f32, n_v: f32, alpha: f32) -> f32 {
 }
 
 /// Beckmann's distribution D, per steradian, of facets with unit normal `h` about the unit normal `n`; `m`
-/// is their rms slope. 0 at and below the horizon.
+/// is their rms slope, at least 1e-18. 0 at and below the horizon. Beckmann and Spizzichino 1963.
+///
+/// In f64 and rounded once: error at most 1 ulp. Packets, [`shade::beckmann`], carry the rounding of the
+/// exponent x = tan² / m² in f32: 4 + 6 x ulp.
 pub fn beckmann(n: Vec3, h: Vec3, m: f32) -> f32 {
-    let (n, h) = (V3::splat(n), V3::splat(h));
-    let across = n.cross(h);
-    of_beckmann(across.dot(across), n.dot(h), m)
+    of_beckmann(angle(n, h), m)
 }
 
-/// The same from the cosine n·h. The error is that of the exponent x = tan² / m²: 4 + 6 x ulp.
+/// The same from the cosine n·h. Error at most 1 ulp.
 pub fn beckmann_of_cosine(cos: f32, m: f32) -> f32 {
-    let cos = splat(cos);
-    of_beckmann(sine2(cos), cos, m)
+    let cos = f64::from(cos);
+    of_beckmann([(1.0 - cos) * (1.0 + cos), cos], m)
 }
 
-fn of_beckmann(sine2: F, cos: F, m: f32) -> f32 {
-    // The engine's floor, under which e to the -1e8 is 0.
-    let d = shade::beckmann(sine2, cos.at_least(splat(1e-4)), splat(m).at_least(splat(1e-3)));
-    per_steradian(d)
+fn of_beckmann([sine2, cos]: [f64; 2], m: f32) -> f32 {
+    if cos.is_nan() || cos <= 0.0 {
+        return 0.0;
+    }
+    let c2 = cos * cos;
+    let m2 = f64::from(m.max(1e-18)) * f64::from(m.max(1e-18));
+    (exp_wide(-(sine2 / (c2 * m2))) * FRAC_1_PI / (m2 * c2 * c2)) as f32
+}
+
+/// Squared sine and cosine of the angle between two vectors that are within rounding of length 1.
+fn angle(a: Vec3, b: Vec3) -> [f64; 2] {
+    let (a, b) = (wide(a), wide(b));
+    let length2 = dot_wide(a, a) * dot_wide(b, b);
+    let across = cross_wide(a, b);
+    [dot_wide(across, across) / length2, dot_wide(a, b) / length2.sqrt()]
 }

@@ -5,7 +5,7 @@ use crate::counters::Counters;
 use crate::math::lanes::{TRUE, V3, splat};
 use crate::quality::Quality;
 use crate::scene::{Field, Node};
-use crate::trace::{self, Rays8};
+use crate::trace;
 use glam::Vec3;
 
 /// Distance of `p` from a form in its place: below 0 within it. Bodies by [`Node::sphere`], [`Node::cuboid`],
@@ -58,8 +58,8 @@ pub fn field_light(ray: &Ray, field: &Field, radius: f32, quality: &Quality) -> 
 
 /// Where a ray meets a field, by sphere tracing with the steps and the epsilon of `quality`.
 pub fn march(ray: &Ray, field: &Field, quality: &Quality) -> Option<f32> {
-    let rays = Rays8 { origin: V3::splat(ray.origin), direction: V3::splat(ray.direction) };
-    let span = trace::field(&rays, field, splat(f32::INFINITY), quality, &mut Counters::default());
-    let t = first(span.first().0);
+    let packet = ray.packet();
+    let span = trace::field(&packet.rays, field, splat(f32::INFINITY), quality, &mut Counters::default());
+    let t = packet.length(first(span.first().0));
     (t > 0.0).then_some(t)
 }

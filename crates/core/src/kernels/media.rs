@@ -10,7 +10,7 @@ pub fn henyey_greenstein(cos: f32, g: f32) -> f32 {
     first(phase::phase(g, splat(cos)))
 }
 
-/// Draws a turn by `u` in 0..=1: cosine, 1 - cosine and sine, each within 1 ulp.
+/// Draws a turn by `u` in 0..=1: cosine, 1 - cosine and sine, each within 1 ulp, the cosine or within 2⁻⁵⁰.
 pub fn sample_henyey_greenstein(u: f32, g: f32) -> [f32; 3] {
     let turn = phase::turn(g, splat(u));
     [turn.cos, turn.one_minus_cos, turn.sin].map(first)

@@ -5,6 +5,12 @@
 //! for measuring the formulas from outside, and for whoever needs a single ray; the engine calls the
 //! packets.
 //!
+//! In two things doors go beyond packets. A ray's direction may have any length, down to subnormal numbers: a power of
+//! two, which changes no bit, brings it to 1 and the distances back. And [`ggx`], [`beckmann`] and [`refract`], of
+//! which f32 can't hold 4 ulp, are f64 inside; what their packets lose stands with each.
+//!
+//! The shapes stand in [`wide`] once more, f64 inside and within 1 ulp: second implementations, for who needs them.
+//!
 //! | here | packets | source |
 //! |---|---|---|
 //! | [`sphere`], [`plane`], [`cylinder`], [`capped_cylinder`], [`cone`], [`capped_cone`], [`triangle`] | the same names in [`trace`](crate::trace) | with each |
@@ -25,9 +31,10 @@
 //! refraction and densities are ratios, light is a share. Directions and normals are unit vectors
 //! where so named: within 2u of length 1, u = 2⁻²⁴.
 //!
-//! **Range.** Rays: squares of coordinates must not leave the range of f32 (1e-19 to 1e18). Anything else,
-//! infinities and NaN included, gives some number or nothing, but no panic, and no NaN where the
-//! exact result is a number.
+//! **Range.** Rays: squares of origins and sizes must not leave the range of f32 (1e-19 to 1e18); a direction is
+//! anything but 0, though packets need its squares within that range too. Anything else, infinities and NaN
+//! included, gives some number or nothing, but no panic, and no NaN where the exact result is a number. Hits whose
+//! distance f32 can't hold are none.
 //!
 //! **Errors** are told in two ways. Of shading terms and elementary functions, in ulp of the exact result for
 //! the given f32 arguments. Of what rays meet as a *score*: the error over what moving the shape by
@@ -72,6 +79,7 @@ mod fields;
 mod media;
 mod optics;
 mod shapes;
+pub mod wide;
 
 pub use crate::math::quadratic::roots as quadratic;
 pub use crate::math::scalar;
@@ -98,4 +106,17 @@ pub fn difference_of_products(a: f32, b: f32, c: f32, d: f32) -> f32 {
 /// The first lane.
 fn first(lanes: F) -> f32 {
     lanes.as_array()[0]
+}
+
+/// A vector in f64, in which products of its coordinates are exact.
+fn in_f64(v: glam::Vec3) -> [f64; 3] {
+    v.to_array().map(f64::from)
+}
+
+fn dot_wide(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn cross_wide(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }

@@ -1,7 +1,7 @@
 //! One ray against one shape.
 
 use super::first;
-use crate::math::lanes::{F, V3, splat};
+use crate::math::lanes::{F, INFINITY, V3, splat};
 use crate::scene::{Cone, Cylinder, Plane, Sphere, Triangle};
 use crate::trace::{self, Aim, Rays8, Span};
 use glam::Vec3;
@@ -44,35 +44,60 @@ pub struct TriangleHit {
     pub weights: [f32; 3],
 }
 
+/// A ray in all lanes, with a direction about as long as 1.
+pub(super) struct Packet {
+    pub rays: Rays8,
+    /// What distances along it are in lengths of the ray's own direction: a power of two.
+    unit: f64,
+}
+
 impl Ray {
-    /// The ray in all lanes.
-    pub(super) fn packet(&self) -> Rays8 {
-        Rays8 { origin: V3::splat(self.origin), direction: V3::splat(self.direction) }
+    /// The ray in all lanes, the longest coordinate of its direction made 1 to 2 by a power of two. That changes no
+    /// bit of what f32 can hold, and products of short directions no longer vanish.
+    pub(super) fn packet(&self) -> Packet {
+        let longest = f64::from(self.direction.abs().max_element());
+        let scales = longest > 0.0 && longest < f64::INFINITY;
+        // As f64 no number of f32 is subnormal.
+        let exponent = if scales { (longest.to_bits() >> 52) as i64 - 1023 } else { 0 };
+        let unit = f64::from_bits(((1023 - exponent) as u64) << 52);
+        let direction = self.direction.to_array().map(|d| (f64::from(d) * unit) as f32);
+        let direction = V3::splat(Vec3::from_array(direction));
+        Packet { rays: Rays8 { origin: V3::splat(self.origin), direction }, unit }
     }
 }
 
-/// A crossing in front of the ray, if there is one.
-fn ahead(span: &Span) -> Option<Crossing> {
-    let crossing = Crossing {
-        enter: first(span.enter),
-        exit: first(span.exit),
-        enter_part: first(span.enter_part) as u32,
-        exit_part: first(span.exit_part) as u32,
-    };
-    let t = crossing.first();
-    (t > 0.0 && t < f32::INFINITY).then_some(crossing)
+impl Packet {
+    /// A distance in lengths of the ray's own direction.
+    pub(super) fn length(&self, t: f32) -> f32 {
+        (f64::from(t) * self.unit) as f32
+    }
+
+    /// A crossing in front of the ray, if there is one.
+    fn ahead(&self, span: &Span) -> Option<Crossing> {
+        let crossing = Crossing {
+            enter: self.length(first(span.enter)),
+            exit: self.length(first(span.exit)),
+            enter_part: first(span.enter_part) as u32,
+            exit_part: first(span.exit_part) as u32,
+        };
+        let t = crossing.first();
+        (t > 0.0 && t < f32::INFINITY).then_some(crossing)
+    }
 }
 
 /// Sphere of a radius over 0. Score at most 4. Haines, Günther and Akenine-Möller, Ray Tracing Gems ch. 7.
 pub fn sphere(ray: &Ray, centre: Vec3, radius: f32) -> Option<Crossing> {
-    ahead(&trace::sphere(&ray.packet(), &Sphere { centre: centre.into(), radius, material: 0, blend: 0.0 }))
+    let packet = ray.packet();
+    let sphere = Sphere { centre: centre.into(), radius, material: 0, blend: 0.0 };
+    packet.ahead(&trace::sphere(&packet.rays, &sphere))
 }
 
 /// Plane through `point` with this unit normal, from either side; a ray in the plane misses it. Score at
 /// most 4.
 pub fn plane(ray: &Ray, point: Vec3, normal: Vec3) -> Option<f32> {
     let plane = Plane { point: point.into(), normal: normal.into(), reach: f32::INFINITY, material: 0 };
-    ahead(&trace::plane(&ray.packet(), &plane)).map(|c| c.enter)
+    let packet = ray.packet();
+    packet.ahead(&trace::plane(&packet.rays, &plane)).map(|c| c.enter)
 }
 
 /// Cylinder without ends about the line through `point` along the unit vector `axis`. Score at most 4.
@@ -82,36 +107,41 @@ pub fn cylinder(ray: &Ray, point: Vec3, axis: Vec3, radius: f32) -> Option<Cross
 
 /// Closed bar from `base`, the middle of its first cap, along the unit vector `axis`. Score at most 4.
 pub fn capped_cylinder(ray: &Ray, base: Vec3, axis: Vec3, radius: f32, length: f32) -> Option<Crossing> {
-    ahead(&trace::cylinder(
-        &ray.packet(),
-        &Cylinder { base: base.into(), axis: axis.into(), radius, length, material: 0 },
-    ))
+    let packet = ray.packet();
+    let bar = Cylinder { base: base.into(), axis: axis.into(), radius, length, material: 0 };
+    packet.ahead(&trace::cylinder(&packet.rays, &bar))
 }
 
 /// Single cone without end from `apex` along the unit vector `axis`; `slope` is the tangent of its half angle.
 /// Score at most 4.
 pub fn cone(ray: &Ray, apex: Vec3, axis: Vec3, slope: f32) -> Option<Crossing> {
-    let range = [0.0, f32::INFINITY];
-    ahead(&trace::cone(
-        &ray.packet(),
-        &Cone { apex: apex.into(), axis: axis.into(), slope, range, caps: [false; 2], material: 0 },
-    ))
+    cut_cone(ray, apex, axis, slope, [0.0, f32::INFINITY], false)
 }
 
 /// Closed cone or frustum: the same between two heights over the apex. Score at most 4.
 pub fn capped_cone(ray: &Ray, apex: Vec3, axis: Vec3, slope: f32, range: [f32; 2]) -> Option<Crossing> {
-    ahead(&trace::cone(
-        &ray.packet(),
-        &Cone { apex: apex.into(), axis: axis.into(), slope, range, caps: [true; 2], material: 0 },
-    ))
+    cut_cone(ray, apex, axis, slope, range, true)
+}
+
+fn cut_cone(
+    ray: &Ray,
+    apex: Vec3,
+    axis: Vec3,
+    slope: f32,
+    range: [f32; 2],
+    capped: bool,
+) -> Option<Crossing> {
+    let packet = ray.packet();
+    let (apex, axis, caps) = (apex.into(), axis.into(), [capped; 2]);
+    packet.ahead(&trace::cone(&packet.rays, &Cone { apex, axis, slope, range, caps, material: 0 }))
 }
 
 /// Triangle, from either side; meshes of them have no leaks. Score at most 4. Woop, Benthin and Wald 2013.
 pub fn triangle(ray: &Ray, corners: [Vec3; 3]) -> Option<TriangleHit> {
-    let rays = ray.packet();
-    let span = trace::triangle(&rays, &Triangle { corners: corners.map(Into::into), material: 0 });
-    let t = ahead(&span)?.enter;
-    let crossing = Aim::new(&rays).cross(&corners.map(V3::splat))?;
+    let packet = ray.packet();
+    let span = trace::triangle(&packet.rays, &Triangle { corners: corners.map(Into::into), material: 0 });
+    let t = packet.ahead(&span)?.enter;
+    let crossing = Aim::new(&packet.rays).cross(&corners.map(V3::splat))?;
     Some(TriangleHit { t, weights: crossing.weights.map(|w| first(w / crossing.sum)) })
 }
 
@@ -121,7 +151,9 @@ pub fn triangle(ray: &Ray, corners: [Vec3; 3]) -> Option<TriangleHit> {
 /// 3 u of (corner - origin) / direction. To lose no ray that meets an edge, the far one is
 /// taken for 1 + 2 γ₃ as much when the two are compared.
 pub fn slab(ray: &Ray, lo: Vec3, hi: Vec3) -> Option<[f32; 2]> {
-    let (enter, exit) = ray.packet().in_box(lo.into(), hi.into(), splat(f32::INFINITY));
-    let hit = enter.simd_le(exit * splat(1.000_000_4)) & exit.simd_ge(F::ZERO);
-    (first(hit).to_bits() != 0).then(|| [first(enter), first(exit)])
+    let packet = ray.packet();
+    let (enter, exit) = packet.rays.in_box(lo.into(), hi.into(), splat(f32::INFINITY));
+    // Entered at infinity is never.
+    let hit = enter.simd_le(exit * splat(1.000_000_4)) & exit.simd_ge(F::ZERO) & enter.simd_lt(INFINITY);
+    (first(hit).to_bits() != 0).then(|| [enter, exit].map(|t| packet.length(first(t))))
 }

@@ -25,6 +25,12 @@ pub fn cross(a: Vec3, b: Vec3) -> Vec3 {
     (a.zxy() * b - b.zxy() * a).zxy()
 }
 
+/// v / |v|; glam's multiplies by 1 / |v| on some processors, which rounds once more.
+#[inline(always)]
+pub fn normalize(v: Vec3) -> Vec3 {
+    v / v.length()
+}
+
 /// A count below 2^31 as a number: one instruction, where any unsigned word would take a branch.
 #[inline(always)]
 pub const fn number(count: usize) -> f32 {

@@ -56,7 +56,7 @@ mod tests {
         let mut random = Random::new(650);
         for _ in 0..100_000 {
             let tilt = Vec3::new(random.signed(-40, 0), random.signed(-40, 0), 1.0);
-            let n = if random.one_in(2) { random.direction() } else { tilt.normalize() };
+            let n = if random.one_in(2) { random.direction() } else { crate::math::normalize(tilt) };
             let n = if random.one_in(2) { -n } else { n };
             let (x, y) = basis(V3::splat(n));
             let (x, y) = (x.lane(0), y.lane(0));

@@ -152,6 +152,11 @@ pub fn exp(x: f32) -> f32 {
     exp2_kernel(f64::from(x) * LOG2_E) as f32
 }
 
+/// e^x before rounding.
+pub(crate) fn exp_wide(x: f64) -> f64 {
+    exp2_kernel(x * LOG2_E)
+}
+
 /// 2^x. Error ≤ 0.51 ulp, exact for integers; inf from 128, subnormal below −126, 0 from −150.
 pub fn exp2(x: f32) -> f32 {
     exp2_kernel(x.into()) as f32
@@ -203,12 +208,10 @@ pub fn atan2(y: f32, x: f32) -> f32 {
 /// Linear light 0..=1 to the sRGB display value 0..=1 (IEC 61966-2-1). Arguments outside are clamped.
 /// Error ≤ 0.51 ulp.
 pub fn srgb_encode(linear: f32) -> f32 {
-    let v = linear.clamp(0.0, 1.0);
-    if v <= 0.0031308 {
-        (12.92 * f64::from(v)) as f32
-    } else {
-        (1.055 * exp2_kernel(log2_kernel(v.into()) / 2.4) - 0.055) as f32
-    }
+    let v = f64::from(linear.clamp(0.0, 1.0));
+    // The nearest f32 to this border lies on the curved side.
+    let display = if v <= 0.0031308 { 12.92 * v } else { 1.055 * exp2_kernel(log2_kernel(v) / 2.4) - 0.055 };
+    display as f32
 }
 
 /// sRGB display value 0..=1 to linear light 0..=1, the inverse of [`srgb_encode`]; clamps likewise.

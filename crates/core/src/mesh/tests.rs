@@ -237,7 +237,7 @@ fn what_lies_in_a_pyramid_is_found() {
         let meshes_only = Scene { spheres: vec![], ..scene.clone() };
         let one = rays(&mut random, &scene);
         for lane in 0..LANES {
-            let (apex, d) = (one.origin.lane(lane), one.direction.lane(lane).normalize());
+            let (apex, d) = (one.origin.lane(lane), crate::math::normalize(one.direction.lane(lane)));
             let (u, v) = d.any_orthonormal_pair();
             let half = random.size(-9, -1);
             let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
@@ -320,7 +320,7 @@ fn facets_know_their_points_normals_and_corners() {
             assert!(n.dot(point - origin) > 0.0, "inwards: {}", replay());
             if mesh.is_smooth() {
                 // A unit ball's normals, by the inverse transposed.
-                let want = (m.inverse().transpose() * p).normalize();
+                let want = crate::math::normalize(m.inverse().transpose() * p);
                 assert!(s.normal.lane(lane).dot(want) > 0.9999, "not round: {}", replay());
                 assert_eq!(at(id).to_bits() ^ at(s.part).to_bits(), 0, "a facet shows: {}", replay());
             } else {

@@ -31,7 +31,7 @@ impl Camera {
         let forward = (self.target - self.position).normalize_or(Vec3::NEG_Z);
         let right = cross(forward, Vec3::Y);
         let right = if right.length_squared() > 1e-12 { right } else { cross(forward, Vec3::Z) };
-        let right = right.normalize();
+        let right = crate::math::normalize(right);
         let up = cross(right, forward);
         let (sin, cos) = sin_cos(self.roll);
         Mat3::from_cols(right * cos + up * sin, up * cos - right * sin, forward)
@@ -100,7 +100,7 @@ mod tests {
                 #[allow(clippy::disallowed_methods, reason = "an oracle in f64 that never reaches a pixel")]
                 let angle = left.cross(right).length().atan2(left.dot(right));
                 assert!((angle - f64::from(fov)).abs() < 2e-6, "{angle} for {fov} at {width}x{height}");
-                let ahead = (camera.target - camera.position).normalize();
+                let ahead = crate::math::normalize(camera.target - camera.position);
                 assert!((stage.direction(width as f32 * 0.5, middle) - ahead).length() < 1e-6);
             }
         }

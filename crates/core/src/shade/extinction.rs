@@ -3,7 +3,7 @@
 //! Depths of steps are added with the rounding of each sum kept (Knuth, TAOCP 2, 4.2.2), so a thousand
 //! steps are as exact as one, and thin media don't vanish; 1 - exp(-τ) never cancels.
 
-use crate::math::lanes::{Bound, F, splat};
+use crate::math::lanes::{Bound, F, INFINITY, splat};
 use crate::math::lanes_fn::{exp, exp_m1};
 
 /// Optical depth along rays: extinction per unit of length, times length, summed.
@@ -28,7 +28,8 @@ impl Depth {
     /// τ, rounded.
     #[inline(always)]
     pub fn depth(&self) -> F {
-        self.sum + self.rest
+        // Beyond infinity there is no rest.
+        self.sum.simd_lt(INFINITY).select(self.sum + self.rest, self.sum)
     }
 
     /// Share of the light that comes through, exp(-τ). Error at most 3 ulp; 0 from τ = 87.3 on.

@@ -45,11 +45,12 @@ pub struct Turn {
 }
 
 /// Draws a turn; the cosine falls from 1 to -1 as `u` falls from 1 to 0. Each number of it is within
-/// 0.51 ulp, for u in 0..=1, which others are clamped to.
+/// 0.51 ulp, the cosine or within 2⁻⁵⁰, for u in 0..=1, which others are clamped to.
 #[inline(always)]
 pub fn turn(g: f32, u: F) -> Turn {
     let (g, back) = forward(g);
     let u = u.at_least(F::ZERO).at_most(F::ONE);
+    let peaked = g > 0.5;
     let (e, g) = (splat_d(1.0 - g), splat_d(g));
     let one = splat_d(1.0);
     // 1 - cos and 1 + cos; going back is going on with the other half of the turn.
@@ -67,8 +68,16 @@ pub fn turn(g: f32, u: F) -> Turn {
     let half = splat_d(0.5);
     Turn {
         cos: in_f64([u], |[u]| {
-            let (w, rest) = both(u);
-            (rest - w) * half
+            if peaked {
+                let (w, rest) = both(u);
+                return (rest - w) * half;
+            }
+            // Summed up, which keeps the digits of an upright turn where g is as small.
+            let s = u + u - one;
+            let s = if back { -s } else { s };
+            let (k, square) = (one + g * s, one + g * g);
+            let cos = (s * square + half * g * (s * s * square + (splat_d(3.0) - g * g))) / (k * k);
+            if back { -cos } else { cos }
         }),
         one_minus_cos: in_f64([u], |[u]| both(u).0),
         sin: in_f64([u], |[u]| {

@@ -1,6 +1,7 @@
 //! Laws of the motion of smoke: bounded and finite however long, nothing out of nothing,
 //! less divergence with each sweep, the same on any number of threads and by any way to a step.
 
+mod long;
 mod sight;
 
 use super::*;

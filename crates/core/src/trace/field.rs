@@ -49,7 +49,7 @@ fn cell(field: &Field, p: V3) -> V3 {
 }
 
 /// The quadratic smooth minimum min - (k - |a - b|)² / 4k (Quilez), and the weight of the larger
-/// number's gradient in it, up to ½; the plain minimum, bit for bit, where |a - b| >= k or k is 0.
+/// number's gradient in it, up to ½; the plain minimum, bit for bit, where |a - b| >= k or k is 0. Error at most 2 u (|a| + |b| + k).
 #[inline(always)]
 pub fn smooth_min(a: F, b: F, k: f32) -> (F, F) {
     let mut least = a.at_most(b);
@@ -62,7 +62,7 @@ pub fn smooth_min(a: F, b: F, k: f32) -> (F, F) {
     (least, h)
 }
 
-/// Distance from a node's form, in its own place.
+/// Distance from a node's form, in its own place. Error at most 4 u (|p - centre| + size). Quilez, "Distance functions".
 #[inline(always)]
 pub fn form(node: &Node, p: V3) -> F {
     let mut p = p - V3::splat(node.centre);

@@ -4,7 +4,7 @@ use super::{Rays8, Span};
 use crate::math::lanes::{F, V3, splat};
 use crate::scene::Plane;
 
-/// Where `rays` cross the plane.
+/// Where `rays` cross the plane, from either side. Score at most 4, as [`kernels`](crate::kernels) defines it.
 pub fn plane(rays: &Rays8, s: &Plane) -> Span {
     let n = V3::splat(s.normal);
     let along = n.dot(rays.direction);

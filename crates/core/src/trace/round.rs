@@ -13,6 +13,9 @@ use super::{Rays8, Span};
 use crate::math::lanes::{Bound, F, V3, copysign, splat};
 use crate::scene::{Cone, Cylinder};
 
+/// What A / |d × a|² may be by rounding alone.
+const PARALLEL: f32 = 2.4e-7;
+
 /// What both shapes know of a ray: its parts along the axis and across it.
 struct Axial {
     /// Distance along the ray from its origin to where it starts anew.
@@ -109,10 +112,13 @@ fn is_far(
 ) -> bool {
     let half = (range[1] - range[0]) * 0.5;
     let middle = reference + axis * (range[0] + half);
-    half < f32::INFINITY && !rays.near_ball(middle, (half * half + rim * rim).sqrt())
+    // As much as rounding moves the middle.
+    let room = (reference.length() + range[1]) * 4e-7;
+    half < f32::INFINITY && !rays.near_ball(middle, (half * half + rim * rim).sqrt() + room)
 }
 
-/// Where `rays` cross the cylinder.
+/// Where `rays` cross the cylinder, closed by its ends. Score at most 4, as [`kernels`](crate::kernels) defines it, with the
+/// way to the base counted twice. Own expansion; the q-form is Kahan's.
 pub fn cylinder(rays: &Rays8, s: &Cylinder) -> Span {
     if is_far(rays, s.base, s.axis, [0.0, s.length], s.radius) {
         return Span::MISS;
@@ -131,7 +137,8 @@ pub fn cylinder(rays: &Rays8, s: &Cylinder) -> Span {
     clip(&ray, side, hit, range, [true; 2])
 }
 
-/// Where `rays` cross the cone.
+/// Where `rays` cross the cone, of a slope over 0. Score at most 4, as [`kernels`](crate::kernels) defines it, with the way
+/// to the apex counted twice. Own expansion; the q-form is Kahan's.
 pub fn cone(rays: &Rays8, s: &Cone) -> Span {
     if is_far(rays, s.apex, s.axis, s.range, s.range[1] * s.slope) {
         return Span::MISS;
@@ -142,6 +149,8 @@ pub fn cone(rays: &Rays8, s: &Cone) -> Span {
     let (n, m) = (ray.n.length(), ray.m.length());
     let (kd, kf) = (k * ray.direction, k * ray.origin);
     let a = (n - kd.abs()) * (n + kd.abs());
+    // Within rounding of the side's slope a ray is parallel to it: the sign of what is left would be chance.
+    let a = a.abs().simd_gt(n * n * splat(PARALLEL)) & a;
     let b = ray.n.dot(ray.m) - kd * kf;
     let c = (m - kf.abs()) * (m + kf.abs());
     let root = k * (ray.n * ray.origin - ray.m * ray.direction).length();

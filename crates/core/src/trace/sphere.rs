@@ -9,7 +9,8 @@ use super::{Rays8, Span};
 use crate::math::lanes::{Bound, F, V3, copysign, splat};
 use crate::scene::Sphere;
 
-/// Where `rays` cross the sphere.
+/// Where `rays` cross the sphere, of a radius over 0. Score at most 4, as [`kernels`](crate::kernels) defines it, for squares
+/// of coordinates within f32. Haines, Günther and Akenine-Möller, Ray Tracing Gems ch. 7.
 pub fn sphere(rays: &Rays8, s: &Sphere) -> Span {
     let d = rays.direction;
     let f = rays.origin - V3::splat(s.centre);

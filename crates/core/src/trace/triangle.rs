@@ -90,7 +90,8 @@ impl Aim {
     }
 }
 
-/// Where `rays` cross the triangle.
+/// Where `rays` cross the triangle, from either side; meshes have no leaks. Score at most 4, as
+/// [`kernels`](crate::kernels) defines it. Woop, Benthin and Wald, JCGT 2(1), 2013.
 pub fn triangle(rays: &Rays8, s: &Triangle) -> Span {
     let crossing = Aim::new(rays).cross(&s.corners.map(V3::splat)).unwrap_or(Crossing::NONE);
     Span::single(crossing.t, crossing.hit)

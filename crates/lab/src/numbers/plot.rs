@@ -6,7 +6,7 @@ use std::fmt::Write;
 
 const LEFT: f64 = 230.0;
 const WIDE: f64 = 560.0;
-const ROW: f64 = 24.0;
+const ROW: f64 = 19.0;
 const TOP: f64 = 92.0;
 /// Ends of the axis, powers of ten.
 const AXIS: [f64; 2] = [-2.0, 8.0];
@@ -50,7 +50,7 @@ pub fn picture(rows: &[Row]) -> String {
     );
     let legend = ["textbook, f32", "engine", "textbook, f64"];
     for ((name, colour), x) in legend.into_iter().zip(COLOURS).zip([LEFT, LEFT + 130.0, LEFT + 220.0]) {
-        writeln!(svg, "<circle cx=\"{x}\" cy=\"50\" r=\"5\" fill=\"{colour}\" stroke=\"none\"/>").unwrap();
+        writeln!(svg, "<circle cx=\"{x}\" cy=\"50\" r=\"4\" fill=\"{colour}\" stroke=\"none\"/>").unwrap();
         text(&mut svg, (x + 10.0, 54.0), "start", INK, name);
     }
     // What the tests allow.
@@ -85,7 +85,7 @@ pub fn picture(rows: &[Row]) -> String {
         for k in [2, 0, 1] {
             let (column, colour) = (&row.columns[k], COLOURS[k]);
             let x = across(column.worst);
-            writeln!(svg, "<circle cx=\"{x:.1}\" cy=\"{y}\" r=\"5\" fill=\"{colour}\" stroke=\"none\"/>")
+            writeln!(svg, "<circle cx=\"{x:.1}\" cy=\"{y}\" r=\"4\" fill=\"{colour}\" stroke=\"none\"/>")
                 .unwrap();
             if x >= right && k == 0 {
                 text(&mut svg, (x - 9.0, y + 4.0), "end", colour, &short(column.worst));

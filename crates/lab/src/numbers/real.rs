@@ -5,6 +5,12 @@ use luc_core::math::lanes::{self, Bound, F};
 use luc_core::math::lanes_f64::{D, splat_d};
 use luc_core::math::lanes_fn;
 
+/// A function of one or two numbers as the platform has it.
+pub struct Function {
+    pub narrow: fn(f32, f32) -> f32,
+    pub wide: fn(f64, f64) -> f64,
+}
+
 /// What the naive formulas need.
 pub trait Real:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
@@ -13,10 +19,14 @@ pub trait Real:
     fn of(v: f64) -> Self;
     fn sqrt(self) -> Self;
     fn exp(self) -> Self;
+    fn sin(self) -> Self;
+    fn cos(self) -> Self;
     fn floor(self) -> Self;
     /// The lesser of two; the other one where `self` is NaN.
     fn min(self, b: Self) -> Self;
     fn max(self, b: Self) -> Self;
+    /// A function of the platform, lane by lane.
+    fn each(f: &Function, x: Self, y: Self) -> Self;
     /// `a` where this is 0 or more, `b` where it is less or NaN.
     fn pick(self, a: Self, b: Self) -> Self;
     fn abs(self) -> Self {
@@ -25,7 +35,7 @@ pub trait Real:
 }
 
 macro_rules! scalar {
-    ($type:ty) => {
+    ($type:ty, $form:ident) => {
         #[allow(clippy::disallowed_methods, reason = "the naive forms are those of the platform")]
         impl Real for $type {
             fn of(v: f64) -> Self {
@@ -36,6 +46,15 @@ macro_rules! scalar {
             }
             fn exp(self) -> Self {
                 self.exp()
+            }
+            fn sin(self) -> Self {
+                self.sin()
+            }
+            fn cos(self) -> Self {
+                self.cos()
+            }
+            fn each(f: &Function, x: Self, y: Self) -> Self {
+                (f.$form)(x, y)
             }
             fn floor(self) -> Self {
                 self.floor()
@@ -52,8 +71,8 @@ macro_rules! scalar {
         }
     };
 }
-scalar!(f32);
-scalar!(f64);
+scalar!(f32, narrow);
+scalar!(f64, wide);
 
 impl Real for F {
     fn of(v: f64) -> Self {
@@ -64,6 +83,16 @@ impl Real for F {
     }
     fn exp(self) -> Self {
         lanes_fn::exp(self)
+    }
+    fn sin(self) -> Self {
+        lanes_fn::sin_cos(self).0
+    }
+    fn cos(self) -> Self {
+        lanes_fn::sin_cos(self).1
+    }
+    fn each(f: &Function, x: Self, y: Self) -> Self {
+        let (x, y) = (x.to_array(), y.to_array());
+        F::new(std::array::from_fn(|i| (f.narrow)(x[i], y[i])))
     }
     fn floor(self) -> Self {
         F::floor(self)
@@ -88,6 +117,16 @@ impl Real for D {
     }
     fn exp(self) -> Self {
         D::exp(self)
+    }
+    fn sin(self) -> Self {
+        D::sin(self)
+    }
+    fn cos(self) -> Self {
+        D::cos(self)
+    }
+    fn each(f: &Function, x: Self, y: Self) -> Self {
+        let (x, y) = (x.to_array(), y.to_array());
+        D::new(std::array::from_fn(|i| (f.wide)(x[i], y[i])))
     }
     fn floor(self) -> Self {
         D::floor(self)

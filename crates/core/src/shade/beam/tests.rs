@@ -36,8 +36,8 @@ fn equals_the_integral_where_it_runs_free() {
         b.fade = if case & 1 == 0 { 0.0 } else { 0.3 };
         let (axis, length) = b.along();
         let aim = b.from + axis * random.range(0.3, 0.7) * length;
-        let side = crate::math::cross(axis, random.direction()).normalize();
-        let d = (side + axis * random.range(-1.0, 1.0)).normalize();
+        let side = crate::math::normalize(crate::math::cross(axis, random.direction()));
+        let d = crate::math::normalize(side + axis * random.range(-1.0, 1.0));
         let off = crate::math::cross(axis, side) * random.range(0.0, 2.0) * b.width;
         let o = aim + off - d * 6.0;
         let got = beam(&b, &packet(|| (o, d)), F::ZERO, INFINITY).x.as_array()[5];
@@ -101,7 +101,11 @@ fn a_small_glow_does_not_twinkle_as_it_moves() {
         let glow = Beam { from: at, to: at, width: 0.8 * pixel, colour: Vec3::ONE, fade: 0.0 };
         let sum: f32 = (-6..=6)
             .flat_map(|y| (-6..=6).map(move |x| Vec3::new(x as f32 * pixel, y as f32 * pixel, distance)))
-            .map(|to| beam(&glow, &packet(|| (Vec3::ZERO, to.normalize())), spread, INFINITY).x.as_array()[0])
+            .map(|to| {
+                beam(&glow, &packet(|| (Vec3::ZERO, crate::math::normalize(to))), spread, INFINITY)
+                    .x
+                    .as_array()[0]
+            })
             .sum();
         // The integral of exp(-q) - exp(-9) up to q = 9 over the pixels, times width / w.
         let w2 = 0.8 * 0.8 + 0.25_f32;

@@ -71,7 +71,7 @@ fn a_spot_is_full_within_dark_without_and_falls_softly_between() {
         let point = Vec3::X * (i as f32 * 0.004);
         let share = irradiance(&lamp(position, Vec3::ONE, kind), point).x
             / irradiance(&lamp(position, Vec3::ONE, LightKind::Point), point).x;
-        let cos = (point - position).normalize().dot(direction);
+        let cos = crate::math::normalize(point - position).dot(direction);
         let x = ((cos - outer) / (inner - outer)).clamp(0.0, 1.0);
         assert!((share - x * x * (3.0 - 2.0 * x)).abs() < 2e-6, "{share} at a cosine of {cos}");
         assert!(share <= before + 2e-6, "{share} after {before}");
@@ -89,7 +89,7 @@ fn a_shining_rectangle_lights_as_a_lamp_in_its_middle_to_its_bright_side_only() 
     for x in 0..20 {
         let point = Vec3::new(x as f32, 0.0, 0.25 * x as f32);
         let d = centre - point;
-        let cos = d.normalize().y;
+        let cos = crate::math::normalize(d).y;
         let expected = radiance * (2.0 * 0.5 / PI * cos * cos / d.length_squared());
         let light = |emitter| irradiance(&Scene { emitters: vec![emitter], ..Scene::default() }, point);
         assert!((light(down) - expected).abs().max_element() <= 2e-6 * expected.x, "{point}");
@@ -148,7 +148,7 @@ fn phongs_highlight_is_its_formula() {
         let l = tilted(random.range(0.01, 1.0), random.range(0.0, 6.3));
         // About the mirrored direction, where there is something to see.
         let r = Vec3::new(-l.x, l.y, -l.z);
-        let v = (r + random.direction() * random.size(-8, 1)).normalize();
+        let v = crate::math::normalize(r + random.direction() * random.size(-8, 1));
         let cos = 2.0 * f64::from(l.y) * v.as_dvec3().y - l.as_dvec3().dot(v.as_dvec3());
         #[allow(clippy::disallowed_methods, reason = "an oracle in f64 that never reaches a pixel")]
         let expected = cos.max(0.0).powf(exponent.into());

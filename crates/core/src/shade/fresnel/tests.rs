@@ -20,7 +20,7 @@ fn falling(random: &mut Random, n: Vec3) -> Vec3 {
     let any = random.direction();
     let across = (any - n * any.dot(n)).normalize_or(n.any_orthogonal_vector());
     let d = if random.one_in(2) { any } else { across + n * random.signed(-24, 0) };
-    (if d.dot(n) > 0.0 { -d } else { d }).normalize()
+    crate::math::normalize(if d.dot(n) > 0.0 { -d } else { d })
 }
 
 #[test]
@@ -144,7 +144,7 @@ fn blended_normals_never_mirror_into_the_body_and_true_ones_mirror_truly() {
     let mut random = Random::new(301);
     for _ in 0..40_000 {
         let facing = random.direction();
-        let normal = (facing + random.direction() * random.size(-8, 0)).normalize();
+        let normal = crate::math::normalize(facing + random.direction() * random.size(-8, 0));
         let rays = [0; 8].map(|_| falling(&mut random, facing));
         let d = V3::from_fn(|i| rays[i]);
         let found = split(Shading::Phong, &glass(V3::splat(normal), V3::splat(facing), false, 1.5, 0.04), d);

@@ -76,7 +76,7 @@ fn a_tile_counts_the_lights_that_reach_into_it() {
             let mask = points.tile(x, y).expect("inside the picture");
             for (i, light) in lights.iter().enumerate() {
                 // A light that the ray through this point meets reaches into its tile.
-                let d = view.world_from_view * Vec3::new(x, -y, 1.0).normalize();
+                let d = view.world_from_view * crate::math::normalize(Vec3::new(x, -y, 1.0));
                 let v = light.position - view.origin;
                 let meets = v.dot(d) > 0.0 && (v - d * v.dot(d)).length() < light.radius * 0.999;
                 assert!(!meets || mask[i / 64] >> (i % 64) & 1 == 1, "light {i} at ({x}, {y})");

@@ -6,7 +6,7 @@
 use crate::math::Vec3;
 use crate::math::lanes::{F, splat};
 use crate::scene::{Plane, Triangle};
-use crate::trace::check::{Inside, Line, Random, Tally, U, packet, two_to};
+use crate::trace::check::{Inside, Line, Random, Tally, U, packet, streams, two_to};
 use crate::trace::{Rays8, plane, triangle};
 use glam::{DVec2, DVec3};
 
@@ -95,9 +95,14 @@ fn named_planes() {
 
 #[test]
 fn random_planes() {
-    let mut random = Random::new(40);
     let mut tally = Tally::new("plane");
-    for _ in 0..25_000 {
+    let each = 25_000;
+    let cases = streams(1).flat_map(|stream| (0..each).map(move |case| (stream, case)));
+    let mut random = Random::new(40);
+    for (stream, case) in cases {
+        if case == 0 {
+            random = Random::new(1000 * stream + 40);
+        }
         let n = random.direction();
         let size = random.size(-10, 10);
         let s = floor(random.vector(-10, 14), n, if random.one_in(2) { f32::INFINITY } else { size });
@@ -147,9 +152,14 @@ fn named_triangles() {
 
 #[test]
 fn random_triangles() {
-    let mut random = Random::new(50);
     let mut tally = Tally::new("triangle");
-    for _ in 0..40_000 {
+    let each = 40_000;
+    let cases = streams(1).flat_map(|stream| (0..each).map(move |case| (stream, case)));
+    let mut random = Random::new(50);
+    for (stream, case) in cases {
+        if case == 0 {
+            random = Random::new(1000 * stream + 50);
+        }
         let size = random.size(-12, 12);
         let at = random.vector(-6, 8) * size;
         let e = [random.direction() * size, random.direction() * (size * random.size(-8, 1))];

@@ -8,7 +8,7 @@
 
 use crate::math::Vec3;
 use crate::scene::{Cone, Cylinder};
-use crate::trace::check::{Inside, Line, Random, Tally, U, packet};
+use crate::trace::check::{Inside, Line, Random, Tally, U, packet, streams};
 use crate::trace::{Rays8, cone, cylinder};
 use glam::DVec3;
 
@@ -19,7 +19,7 @@ fn double(k: i32) -> f64 {
 
 const INF: f64 = f64::INFINITY;
 
-/// Streams of random numbers that each law draws from: what one of them misses may be in the next.
+/// Streams that each law draws from.
 const STREAMS: u32 = 6;
 
 /// A ray along and across an axis.
@@ -207,7 +207,7 @@ fn a_ray_in_a_caps_plane_hits_the_closed_bar() {
 fn random_cylinders() {
     for kind in 0..2 {
         let mut tally = Tally::new(["finite cylinder", "infinite cylinder"][kind as usize]);
-        for stream in 0..STREAMS {
+        for stream in streams(STREAMS) {
             let mut random = Random::new(1000 * stream + 10 + kind);
             for _ in 0..8_000 {
                 let r = random.size(-14, 14);
@@ -280,7 +280,38 @@ fn named_cones() {
     for (s, o, d) in cases {
         judge_cone(&mut tally, &s, &packet(|| (o, d)));
     }
+    // Behind the eye, along the side and so near to the tip that it is the point where the ray starts anew.
+    let (tip, axis) = (v(0.04178075, 0.016215187, -0.017201947), v(0.4068821, 0.8525499, 0.32803312));
+    let s = frustum(tip, axis, 0.53960305, [0.0, 0.2010007], [true; 2]);
+    let ray = (v(5.910433, 9.069986, -1.579223), v(0.53831387, 0.83047533, -0.14327952));
+    judge_cone(&mut tally, &s, &packet(|| ray));
     tally.finish(4.0);
+}
+
+/// Far from the world's origin the middle of a thin body is rounded by more than the body is wide.
+#[test]
+fn thin_bodies_far_from_the_origin_are_hit() {
+    let (mut bars, mut hats) = (Tally::new("thin bar, far"), Tally::new("thin cone, far"));
+    for stream in streams(1) {
+        let mut random = Random::new(1000 * stream + 70);
+        for _ in 0..10_000 {
+            let x = random.size(8, 20);
+            let far = Vec3::new(x, random.range(-1.0, 1.0), random.range(-1.0, 1.0));
+            // About as long as the grain of x.
+            let height = (x.next_up() - x) * random.size(-3, 4);
+            let (axis, size, k) = (random.direction(), height * random.size(-8, 0), random.size(-6, 0));
+            let origin = far + random.direction() * (height * random.size(0, 8));
+            let end = if random.one_in(2) { 0.01 } else { 0.99 };
+            let direction = (axis * (height * end) - (origin - far)).normalize_or(axis);
+            // Alone: a body is far if it is for all rays.
+            let rays = packet(|| (origin, direction));
+            judge_cylinder(&mut bars, &bar(far, axis, size, height), &rays);
+            judge_cone(&mut hats, &frustum(far, axis, k, [0.0, height], [true; 2]), &rays);
+        }
+    }
+    assert!(bars.hits.min(hats.hits) > 50_000, "{} {} hits", bars.hits, hats.hits);
+    bars.finish(4.0);
+    hats.finish(4.0);
 }
 
 /// A line through the tip of a closed cone must not slip between side and end.
@@ -293,7 +324,7 @@ fn rays_through_the_tip_hit() {
         let s = frustum(apex, axis, random.size(-3, 3), [0.0, 1.0], [random.one_in(2), true]);
         let rays = packet(|| {
             let side = axis.any_orthogonal_vector() * s.slope * random.range(-0.9, 0.9);
-            let d = (axis + side).normalize() * if random.one_in(2) { 1.0 } else { -1.0 };
+            let d = crate::math::normalize(axis + side) * if random.one_in(2) { 1.0 } else { -1.0 };
             (apex - d * random.size(-2, 4), d)
         });
         let (t, part) = cone(&rays, &s).first();
@@ -307,7 +338,7 @@ fn random_cones() {
     for kind in 0..4 {
         let names = ["infinite cone", "pointed cone", "frustum, closed", "frustum, open"];
         let mut tally = Tally::new(names[kind as usize]);
-        for stream in 0..STREAMS {
+        for stream in streams(STREAMS) {
             let mut random = Random::new(1000 * stream + 30 + kind);
             for _ in 0..4_000 {
                 let h = random.size(-14, 14);
@@ -332,8 +363,8 @@ fn random_cones() {
                     let lift = 1.0 + if random.one_in(2) { random.signed(-20, 1) } else { 0.0 };
                     let inwards = if random.one_in(3) { random.range(0.0, 1.0) } else { 1.0 };
                     let target = s.apex + axis * height + out * (height * k * lift * inwards);
-                    let along = if random.one_in(2) { axis } else { (axis + out * k).normalize() };
-                    random.ray(target, (out - axis * k).normalize(), along, h * k.min(1.0))
+                    let along = if random.one_in(2) { axis } else { crate::math::normalize(axis + out * k) };
+                    random.ray(target, crate::math::normalize(out - axis * k), along, h * k.min(1.0))
                 });
                 judge_cone(&mut tally, &s, &rays);
             }
@@ -348,7 +379,7 @@ fn random_cones() {
 fn rays_along_an_end() {
     let mut bars = Tally::new("along a bar's end");
     let mut hats = Tally::new("along a cone's end");
-    for stream in 0..STREAMS {
+    for stream in streams(STREAMS) {
         let mut random = Random::new(1000 * stream + 50);
         for _ in 0..2_000 {
             let (h, axis, k) = (random.size(-8, 8), random.direction(), random.size(-4, 4));
@@ -375,7 +406,7 @@ fn rays_along_an_end() {
 #[test]
 fn rays_along_the_side_through_the_tip() {
     let mut tally = Tally::new("along a cone's side");
-    for stream in 0..STREAMS {
+    for stream in streams(STREAMS) {
         let mut random = Random::new(1000 * stream + 60);
         for _ in 0..2_000 {
             let (h, axis, k) = (random.size(-8, 8), random.direction(), random.size(-6, 4));
@@ -384,7 +415,7 @@ fn rays_along_the_side_through_the_tip() {
             let rays = packet(|| {
                 let any = random.direction();
                 let out = (any - axis * any.dot(axis)).normalize_or(axis.any_orthogonal_vector());
-                let d = (axis + out * k).normalize() + random.direction() * random.signed(-28, -22);
+                let d = crate::math::normalize(axis + out * k) + random.direction() * random.signed(-28, -22);
                 let d = if random.one_in(2) { d } else { -d };
                 (s.apex + d * (h * random.signed(-6, 6)), d)
             });

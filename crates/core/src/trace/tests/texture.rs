@@ -35,7 +35,7 @@ fn relief_has_the_normal_of_the_moved_surface() {
             // The graph y = b h(x, z) has the normal (-b dh/dx, 1, -b dh/dz).
             let (_, g) = value_noise(V3::splat(p * scale));
             let g = g.lane(0) * (scale * bump);
-            let expected = Vec3::new(-g.x, 1.0, -g.z).normalize();
+            let expected = crate::math::normalize(Vec3::new(-g.x, 1.0, -g.z));
             let found = s.normal.lane(i);
             assert!((found - expected).length() < 1e-5, "{found} {expected} at {p:?}, case {case}");
             assert_eq!(s.outward().lane(i), Vec3::Y, "only shading sees the relief");

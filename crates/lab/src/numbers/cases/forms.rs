@@ -1,24 +1,34 @@
-//! Forms of fields, bases and elementary functions.
+//! Joins and repetition, walks, bases and drawn directions.
 
 use super::*;
 
 pub const KERNELS: &[Kernel] = &[
     kernel!(
-        "smooth minimum",
+        "smooth union",
         smooth_min,
-        Measure::Unit(|x, _| f64::from(x[0].abs().max(x[1].abs()).max(x[2]))),
-        |random| {
-            let (a, k) = (random.signed(-10, 10), random.size(-10, 4));
-            let b = if random.one_in(2) { a + k * random.range(-1.5, 1.5) } else { random.signed(-10, 10) };
-            list([&[a, b, if random.one_in(16) { 0.0 } else { k }]])
-        },
-        |x, _| {
-            let [a, b, k] = vector(x, 0).map(f64::from);
-            let h = (k - (a - b).abs()).max(0.0);
-            a.min(b) - if h > 0.0 { h * h / (4.0 * k) } else { 0.0 }
-        },
+        Measure::Unit(join_unit),
+        join_draw,
+        |x, _| join_truth(x[0], x[1], x[2]),
         |x| kernels::smooth_union(x[0], x[1], x[2]),
         |x| trace::smooth_min(x[0], x[1], scalar(x[2])).0
+    ),
+    kernel!(
+        "smooth intersection",
+        smooth_intersection,
+        Measure::Unit(join_unit),
+        join_draw,
+        |x, _| -join_truth(-x[0], -x[1], x[2]),
+        |x| kernels::smooth_intersection(x[0], x[1], x[2]),
+        |x| -trace::smooth_min(-x[0], -x[1], scalar(x[2])).0
+    ),
+    kernel!(
+        "smooth subtraction",
+        smooth_subtraction,
+        Measure::Unit(join_unit),
+        join_draw,
+        |x, _| -join_truth(-x[0], x[1], x[2]),
+        |x| kernels::smooth_subtraction(x[0], x[1], x[2]),
+        |x| -trace::smooth_min(-x[0], x[1], scalar(x[2])).0
     ),
     kernel!(
         "repetition",
@@ -40,39 +50,42 @@ pub const KERNELS: &[Kernel] = &[
         |x| trace::repeated(x[0], scalar(x[1]), f32::INFINITY).1
     ),
     kernel!(
-        "distance from a box",
-        sdf_box,
-        Measure::Unit(|x, _| f64::from(v3(x, 0).length() + v3(x, 3).length())),
-        |random| {
-            let half = Vec3::from_array([0; 3].map(|_| random.range(0.1, 1.0)));
-            let p = random.vector(-6, 10);
-            list([&p.to_array(), &half.to_array()])
+        "repetition, bounded",
+        repeat_bounded,
+        Measure::Unit(|x, _| f64::from(x[0].abs() + x[1])),
+        |random| loop {
+            let (x, side) = (random.signed(-4, 17), random.size(-4, 4));
+            let cell = f64::from(x) / f64::from(side) + 0.5;
+            if (cell - cell.round()).abs() > 4.0 * U * cell.abs() {
+                return list([&[x, side, (random.bits() % 64) as f32]]);
+            }
         },
         |x, _| {
-            let q = v3(x, 0).as_dvec3().abs() - v3(x, 3).as_dvec3();
-            q.max(glam::DVec3::ZERO).length() + q.max_element().min(0.0)
+            let [x, side, most] = vector(x, 0).map(f64::from);
+            x - side * (x / side + 0.5).floor().clamp(-most, most)
         },
-        |x| kernels::sdf(&Node::cuboid(Vec3::ZERO, v3(x, 3), 0.0), v3(x, 0).into()),
-        |x| trace::form(&Node::cuboid(Vec3::ZERO, v3(&shape(x), 3), 0.0), packet(x, 0))
+        |x| kernels::repeat(x[0], x[1], x[2]),
+        |x| trace::repeated(x[0], scalar(x[1]), scalar(x[2])).1
     ),
     kernel!(
-        "distance from a ring",
-        sdf_torus,
-        Measure::Unit(|x, _| f64::from(v3(x, 0).length() + x[3] + x[4])),
+        "walk through 128 cells",
+        walk,
+        Measure::Ulp,
         |random| {
-            let (radius, thick) = (random.range(0.5, 2.0), random.range(0.01, 0.5));
-            let p = if random.one_in(2) { random.vector(-6, 10) } else { random.direction() * radius };
-            list([&p.to_array(), &[radius, thick]])
+            let place = if random.one_in(4) { 0.0 } else { random.range(0.0, 0.999) };
+            list([&[place, 0.5, 0.5, random.size(-10, 10), random.signed(-40, -32), 0.0]])
         },
-        |x, _| {
-            let p = v3(x, 0).as_dvec3();
-            let out = (p.x * p.x + p.z * p.z).sqrt() - f64::from(x[3]);
-            (out * out + p.y * p.y).sqrt() - f64::from(x[4])
-        },
-        |x| kernels::sdf(&Node::torus(Vec3::ZERO, x[3], x[4]), v3(x, 0).into()),
+        |x, _| (127.0 - f64::from(x[0])) / f64::from(x[3]),
+        |x| kernels::walk(&ray(x), [128, 1, 1]).last().map_or(f32::NAN, |visit| visit.enter),
         |x| {
-            let s = shape(x);
-            trace::form(&Node::torus(Vec3::ZERO, s[3], s[4]), packet(x, 0))
+            let steps = trace::Walk::new(packet(x, 0), packet(x, 3));
+            let (mut cell, mut enter) = ([F::ZERO; 3], F::ZERO);
+            for _ in 0..127 {
+                let (leave, across) = steps.leave(&cell);
+                (enter, cell) =
+                    (leave, std::array::from_fn(|axis| steps.next(cell[axis], axis, across[axis])));
+            }
+            enter
         }
     ),
     kernel!(
@@ -97,14 +110,35 @@ pub const KERNELS: &[Kernel] = &[
         }
     ),
     kernel!(
-        "exp",
-        exp,
-        Measure::Ulp,
-        |random| list([&[
-            random.range(-87.0, 88.0) * if random.one_in(2) { 1.0 } else { random.size(-20, 0) }
-        ]]),
-        |x, _| exact_exp(x[0].into()),
-        |x| kernels::scalar::exp(x[0]),
-        |x| lanes_fn::exp(x[0])
+        "drawn about a normal",
+        cosine,
+        // Three products, each of two rounded numbers.
+        Measure::Unit(|_, _| 3.0),
+        |random| {
+            let n = random.direction();
+            let u = if random.one_in(2) { random.range(0.0, 1.0) } else { 1.0 - random.size(-24, 0) };
+            list([&n.to_array(), &[u, random.range(0.0, 1.0)]])
+        },
+        |x, _| (1.0 - f64::from(x[3])).sqrt(),
+        |x| v3(x, 0).as_dvec3().dot(kernels::cosine_weighted(v3(x, 0).into(), x[3], x[4]).as_dvec3()) as f32,
+        |x| sampling::cosine(packet(x, 0), (x[3], x[4])).z
     ),
 ];
+
+/// Two distances and a radius: often within the blend, now and then without one.
+fn join_draw(random: &mut Random) -> Arguments<f32> {
+    let (a, k) = (random.signed(-10, 10), random.size(-10, 4));
+    let b = if random.one_in(2) { a + k * random.range(-1.5, 1.5) } else { random.signed(-10, 10) };
+    // Of like sign and unlike, for all three joins.
+    list([&[a, if random.one_in(2) { -b } else { b }, if random.one_in(16) { 0.0 } else { k }]])
+}
+
+fn join_unit(x: &Arguments<f32>, _: f64) -> f64 {
+    x[0].abs().max(x[1].abs()).max(x[2]).into()
+}
+
+fn join_truth(a: f32, b: f32, k: f32) -> f64 {
+    let [a, b, k] = [a, b, k].map(f64::from);
+    let h = (k - (a - b).abs()).max(0.0);
+    a.min(b) - if h > 0.0 { h * h / (4.0 * k) } else { 0.0 }
+}

@@ -33,12 +33,8 @@ pub const KERNELS: &[Kernel] = &[
             let (n, h) = (v3(x, 0).as_dvec3(), v3(x, 3).as_dvec3());
             ggx_truth(n.cross(h).length_squared(), n.dot(h), x[6].into())
         },
-        |x| kernels::ggx(v3(x, 0).into(), v3(x, 3).into(), x[6]),
-        |x| {
-            let (n, h) = (packet(x, 0), packet(x, 3));
-            let across = n.cross(h);
-            shade::distribution(across.dot(across), n.dot(h), x[6]) * splat(std::f32::consts::FRAC_1_PI)
-        }
+        |x| scalar(ggx_packet(&x.map(splat))),
+        ggx_packet
     ),
     kernel!(
         "Smith G1",
@@ -86,11 +82,8 @@ pub const KERNELS: &[Kernel] = &[
             let (c, m) = (f64::from(x[0]), f64::from(x[1]));
             exact_exp(-exponent(c, m)) / (PI * m * m * c * c * c * c)
         },
-        |x| kernels::beckmann_of_cosine(x[0], x[1]),
-        |x| {
-            let sine2 = (F::ONE - x[0]) * (F::ONE + x[0]);
-            shade::beckmann(sine2, x[0], x[1]) * splat(std::f32::consts::FRAC_1_PI)
-        }
+        |x| scalar(beckmann_packet(&x.map(splat))),
+        beckmann_packet
     ),
     kernel!(
         "Schlick",
@@ -152,11 +145,16 @@ pub const KERNELS: &[Kernel] = &[
             // Within the rounding of n and d either is right.
             if (sine - 1.0).abs() < 8.0 * U { f64::INFINITY } else { -((1.0 - sine) * (1.0 + sine)).sqrt() }
         },
-        |x| some(kernels::refract(v3(x, 0).into(), v3(x, 3).into(), x[6]).map(|t| t.dot(v3(x, 3).into()))),
         |x| {
-            let (d, n) = (packet(x, 0), packet(x, 3));
-            shade::refract(n, d, -d.dot(n), x[6]).direction.x
-        }
+            let all = x.map(splat);
+            let found = refracted(&all);
+            if scalar(found.total).to_bits() != 0 {
+                f32::NAN
+            } else {
+                scalar(found.direction.dot(packet(&all, 3)))
+            }
+        },
+        |x| refracted(x).direction.x
     ),
     kernel!(
         "Henyey-Greenstein",
@@ -215,4 +213,33 @@ pub const KERNELS: &[Kernel] = &[
             sum.lost()
         }
     ),
+    kernel!(
+        "even medium",
+        homogeneous,
+        Measure::Ulp,
+        |random| list([&[random.size(-40, 6), random.size(-10, 10)]]),
+        |x, _| {
+            let (sigma, t) = (f64::from(x[0]), f64::from(x[1]));
+            -exact_exp_m1(-sigma * t) / sigma
+        },
+        |x| kernels::homogeneous(x[0], x[1]),
+        |x| extinction::reach(x[0], x[1])
+    ),
 ];
+
+/// D from two vectors, as the engine's packets have it.
+fn ggx_packet(x: &Arguments<F>) -> F {
+    let (n, h) = (packet(x, 0), packet(x, 3));
+    let across = n.cross(h);
+    shade::distribution(across.dot(across), n.dot(h), x[6]) * splat(std::f32::consts::FRAC_1_PI)
+}
+
+fn beckmann_packet(x: &Arguments<F>) -> F {
+    let sine2 = (F::ONE - x[0]) * (F::ONE + x[0]);
+    shade::beckmann(sine2, x[0], x[1]) * splat(std::f32::consts::FRAC_1_PI)
+}
+
+fn refracted(x: &Arguments<F>) -> shade::Refracted {
+    let (d, n) = (packet(x, 0), packet(x, 3));
+    shade::refract(n, d, -d.dot(n), x[6])
+}

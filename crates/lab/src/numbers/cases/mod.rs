@@ -8,7 +8,7 @@ use luc_core::math::Vec3;
 use luc_core::math::lanes::{self, F, V3, splat};
 use luc_core::math::lanes_f64::D;
 use luc_core::math::random::Random;
-use luc_core::math::{lanes_fn, sampling};
+use luc_core::math::sampling;
 use luc_core::scene::{Cone, Cylinder, Node, Plane, Sphere, Triangle};
 use luc_core::shade::{self, dielectric, extinction, phase};
 use luc_core::trace::{self, Rays8};
@@ -62,13 +62,17 @@ macro_rules! kernel {
     };
 }
 
+mod fields;
 mod forms;
+mod functions;
 mod light;
 mod shapes;
 
 /// All formulas, in the order of the report.
 pub fn all() -> impl Iterator<Item = &'static Kernel> {
-    [shapes::KERNELS, light::KERNELS, forms::KERNELS].into_iter().flatten()
+    [shapes::KERNELS, light::KERNELS, fields::KERNELS, forms::KERNELS, functions::KERNELS]
+        .into_iter()
+        .flatten()
 }
 
 fn v3(x: &Arguments<f32>, at: usize) -> Vec3 {
