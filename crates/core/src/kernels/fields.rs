@@ -5,7 +5,7 @@ use crate::counters::Counters;
 use crate::math::lanes::{TRUE, V3, splat};
 use crate::quality::Quality;
 use crate::scene::{Field, Node};
-use crate::trace;
+use crate::trace::{self, Rays8};
 use glam::Vec3;
 
 /// Distance of `p` from a form in its place: below 0 within it. Bodies by [`Node::sphere`], [`Node::cuboid`],

@@ -83,7 +83,7 @@ fn a_surface_has_the_colour_of_its_place_in_the_image_however_it_is_placed() {
             continue;
         }
         let at = p + e * a + f * b;
-        let n = n.normalize();
+        let n = crate::math::normalize(n);
         let rays = Rays8 { origin: V3::splat(at + n), direction: V3::splat(-n) };
         let scene =
             Scene { meshes: Assembly::new(vec![instance]), materials: vec![material], ..Scene::default() };
