@@ -15,6 +15,7 @@ mod render {
 }
 
 use render::{mtl::Told, obj::Model};
+use std::path::Path;
 
 fuzz_target!(|data: &[u8]| {
     let text = String::from_utf8_lossy(data);
@@ -33,7 +34,7 @@ fuzz_target!(|data: &[u8]| {
         }
         Err(told) => assert!(told.starts_with("line ") && !told.contains('\n'), "{told}"),
     }
-    match Told::read(&text) {
+    match Told::read(Path::new("materials.mtl"), &text) {
         Ok(materials) => {
             materials.iter().for_each(|told| assert!(told.exponent.is_finite() && told.ior.is_finite()))
         }
