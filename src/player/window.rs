@@ -18,7 +18,7 @@ use std::mem::ManuallyDrop;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 /// Preparations shorter than this show no bar.
-const UNNOTICED: u64 = 100 * MILLISECOND;
+const UNNOTICED: u64 = 50 * MILLISECOND;
 /// The picture is presented again after this time, because X11 forgets what was covered.
 const STALE: u64 = 100 * MILLISECOND;
 
