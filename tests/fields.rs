@@ -6,18 +6,15 @@ use luc_core::counters::{Counter, Counters};
 use luc_core::math::Vec3;
 use luc_core::plan::Plan;
 use luc_core::quality::Quality;
-use luc_core::render::Renderer;
 use luc_core::scene::{
     Camera, Emitter, Field, Join, Light, LightKind, Material, Node, Plane, Scene, Shading, Sphere,
 };
-use support::picture::psnr;
+use support::picture::{draw, psnr};
 
 const SIZE: (u32, u32) = (320, 180);
 
 fn render(scene: &Scene, quality: &Quality) -> (Vec<u32>, Counters) {
-    let mut renderer = Renderer::default();
-    let mut pixels = vec![0; (SIZE.0 * SIZE.1) as usize];
-    renderer.frame(scene, 0, SIZE, quality, &mut pixels);
+    let (pixels, renderer) = draw(scene, SIZE, quality);
     (pixels, renderer.counters)
 }
 

@@ -1,13 +1,15 @@
 //! Small lights in great number: culling changes no byte, and light ends where it should. Shining
 //! rectangles: their shadows are as soft as the quality draws them.
 
+mod support;
+
 use luc_core::counters::Counter;
 use luc_core::math::Vec3;
 use luc_core::math::hash::{hash2, unit};
 use luc_core::plan::{Plan, warnings};
 use luc_core::quality::Quality;
-use luc_core::render::Renderer;
 use luc_core::scene::{Camera, Emitter, Material, Plane, PointLight, Scene, Shading, Sphere};
+use support::picture::draw;
 
 const SIZE: (u32, u32) = (320, 180);
 
@@ -42,9 +44,7 @@ fn scene(count: u32, shading: Shading) -> Scene {
 }
 
 fn render(scene: &Scene, quality: &Quality) -> (Vec<u32>, u64) {
-    let mut renderer = Renderer::default();
-    let mut pixels = vec![0; (SIZE.0 * SIZE.1) as usize];
-    renderer.frame(scene, 0, SIZE, quality, &mut pixels);
+    let (pixels, renderer) = draw(scene, SIZE, quality);
     (pixels, renderer.counters.get(Counter::PointLights))
 }
 

@@ -15,7 +15,7 @@ use luc_core::scene::{
     Air, Background, Camera, Cylinder, Edit, Grade, Light, LightKind, Material, Plane, Rules, Scene, Smoke,
     Sphere, Stop, Triangle, Voxels,
 };
-use support::picture::{Picture, channels, distance, psnr};
+use support::picture::{self, Picture, channels, distance, psnr};
 use support::{golden, luc, run};
 
 const SIZE: (u32, u32) = (160, 90);
@@ -100,8 +100,7 @@ fn exact(smoke: f32) -> Quality {
 }
 
 fn draw(scene: &Scene, quality: &Quality) -> Picture {
-    let mut pixels = vec![0; (SIZE.0 * SIZE.1) as usize];
-    Renderer::default().frame(scene, 0, SIZE, quality, &mut pixels);
+    let (pixels, _) = picture::draw(scene, SIZE, quality);
     Picture { width: SIZE.0, height: SIZE.1, pixels }
 }
 

@@ -6,22 +6,15 @@ use luc_core::counters::Counter;
 use luc_core::math::Vec3;
 use luc_core::plan::Plan;
 use luc_core::quality::Quality;
-use luc_core::render::{Renderer, Stage};
+use luc_core::render::Stage;
 use luc_core::sample::{Kind, Scratch, Tile, refine};
 use luc_core::scene::*;
-use support::picture::psnr;
+use support::picture::{draw, psnr};
 
 const SIZE: (u32, u32) = (320, 180);
 
 fn preset(name: &str) -> Quality {
     Quality::named(name).expect("a preset's name")
-}
-
-fn render(scene: &Scene, size: (u32, u32), quality: &Quality) -> (Vec<u32>, Renderer) {
-    let mut renderer = Renderer::default();
-    let mut pixels = vec![0; (size.0 * size.1) as usize];
-    renderer.frame(scene, 0, size, quality, &mut pixels);
-    (pixels, renderer)
 }
 
 /// Posts and balls on a wet floor with relief, before a low sun.
@@ -85,8 +78,8 @@ fn relief_in_mirrors_is_within_40_db_of_every_pixel_traced() {
         for name in ["medium", "high", "ultra"] {
             // With one ray a mirror: drawn rays are noise, which is compared elsewhere.
             let quality = Quality { rough: 0, ..preset(name) };
-            let (adaptive, renderer) = render(&scene, size, &quality);
-            let (full, _) = render(&scene, size, &quality.every_pixel());
+            let (adaptive, renderer) = draw(&scene, size, &quality);
+            let (full, _) = draw(&scene, size, &quality.every_pixel());
             let db = psnr(&full, &adaptive);
             let traced = renderer.counters.get(Counter::Traced);
             println!("{name} {size:?}: {db:.2} dB, {traced} pixels traced");
@@ -99,7 +92,7 @@ fn relief_in_mirrors_is_within_40_db_of_every_pixel_traced() {
 fn the_plan_names_what_these_surfaces_call_for() {
     let scene = Scene { bounces: 1, ..shore() };
     for (name, quality) in Quality::PRESETS {
-        let (_, renderer) = render(&scene, (96, 54), &quality);
+        let (_, renderer) = draw(&scene, (96, 54), &quality);
         let plan = Plan::of(&scene, &quality);
         for counter in
             [Counter::Ggx, Counter::Bumps, Counter::TextureLookups, Counter::RoughRays, Counter::ScatterRays]
@@ -211,7 +204,7 @@ fn traced_pixels_are_the_same_whatever_else_is_traced() {
 fn averaged_patterns_come_closer_to_the_reference() {
     let scene = Scene { bounces: 1, ..shore() };
     let quality = Quality { edge_samples: 0, scatter: 2, rough: 2, ..preset("high").every_pixel() };
-    let of = |average: u32| render(&scene, SIZE, &Quality { average, ..quality }).0;
+    let of = |average: u32| draw(&scene, SIZE, &Quality { average, ..quality }).0;
     let reference = of(96);
     let ladder: Vec<f64> = [1, 4, 16].map(|k| psnr(&reference, &of(k))).into();
     println!("{ladder:.2?} dB with 1, 4, 16 patterns");
@@ -244,8 +237,8 @@ fn each_pattern_is_within_40_db_and_counted_only_where_it_is() {
     for (pattern, own) in patterns {
         let scene = stones(pattern);
         let quality = preset("high");
-        let (adaptive, renderer) = render(&scene, (640, 360), &quality);
-        let (full, _) = render(&scene, (640, 360), &quality.every_pixel());
+        let (adaptive, renderer) = draw(&scene, (640, 360), &quality);
+        let (full, _) = draw(&scene, (640, 360), &quality.every_pixel());
         let db = psnr(&full, &adaptive);
         println!("{pattern:?}: {db:.2} dB");
         assert!(db >= 40.0, "{pattern:?}: {db:.2} dB");
@@ -266,7 +259,7 @@ fn drawn_rays_are_the_same_on_any_number_of_threads() {
     let quality = Quality { average: 2, ..preset("ultra") };
     let on = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-        pool.install(|| render(&scene, SIZE, &quality).0)
+        pool.install(|| draw(&scene, SIZE, &quality).0)
     };
     let one = on(1);
     for threads in [2, 5] {
@@ -304,7 +297,7 @@ fn chains_of_mirrors_end_at_their_depth_or_where_they_add_too_little() {
     let size = (64, 36);
     let pixels = u64::from(size.0 * size.1);
     let asked = |depth, cutoff| Quality { depth, cutoff, edge_samples: 0, ..preset("high").every_pixel() };
-    let reflected = |quality: &Quality| render(&scene, size, quality).1.counters.get(Counter::ReflectedRays);
+    let reflected = |quality: &Quality| draw(&scene, size, quality).1.counters.get(Counter::ReflectedRays);
     for depth in 0..12 {
         assert_eq!(reflected(&asked(depth, 0.0)), pixels * u64::from(depth), "to a depth of {depth}");
     }

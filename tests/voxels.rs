@@ -6,12 +6,11 @@ mod support;
 use luc_core::math::Vec3;
 use luc_core::math::hash::{hash2, mix};
 use luc_core::quality::Quality;
-use luc_core::render::Renderer;
 use luc_core::scene::{
     Background, Camera, Grade, Light, LightKind, Material, Plane, Scene, Shading, Sphere, Stop, Triangle,
     Voxels,
 };
-use support::picture::{distance, psnr};
+use support::picture::{self, distance, psnr};
 
 const SIZE: (u32, u32) = (320, 180);
 
@@ -108,9 +107,7 @@ fn scene(shading: Shading) -> Scene {
 
 fn draw(scene: &Scene) -> Vec<u32> {
     let quality = Quality { edge_samples: 0, ..Quality::named("high").unwrap().every_pixel() };
-    let mut pixels = vec![0; (SIZE.0 * SIZE.1) as usize];
-    Renderer::default().frame(scene, 0, SIZE, &quality, &mut pixels);
-    pixels
+    picture::draw(scene, SIZE, &quality).0
 }
 
 #[test]

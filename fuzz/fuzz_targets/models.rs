@@ -3,7 +3,7 @@
 
 use libfuzzer_sys::fuzz_target;
 
-#[allow(dead_code)]
+#[allow(dead_code, reason = "the lab uses the rest")]
 #[path = "."]
 mod render {
     #[path = "../../crates/lab/src/render/mtl.rs"]

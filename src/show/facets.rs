@@ -172,6 +172,7 @@ const FOOT: usize = 1;
 fn meshes() -> &'static [Arc<Mesh>] {
     static MESHES: OnceLock<Vec<Arc<Mesh>>> = OnceLock::new();
     MESHES.get_or_init(|| {
+        // The cathedral looks as it does by this number.
         let mut dice = Dice(2310);
         let mesh = |rule: &Rule| {
             let mut triangles = Vec::new();

@@ -1,5 +1,8 @@
 //! Pictures of 0RGB pixels: read from files, compared, and shown next to each other.
 
+use luc_core::quality::Quality;
+use luc_core::render::Renderer;
+use luc_core::scene::Scene;
 use std::path::Path;
 
 /// Rows of 0RGB pixels, top to bottom.
@@ -41,6 +44,13 @@ pub fn psnr(a: &[u32], b: &[u32]) -> f64 {
 pub fn fingerprint(pixels: &[u32]) -> u64 {
     let bytes = pixels.iter().flat_map(|p| p.to_be_bytes().into_iter().skip(1));
     bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3))
+}
+
+/// The pixels of a scene at frame 0 by a new renderer, and that.
+pub fn draw(scene: &Scene, (width, height): (u32, u32), quality: &Quality) -> (Vec<u32>, Renderer) {
+    let (mut renderer, mut pixels) = (Renderer::default(), vec![0; (width * height) as usize]);
+    renderer.frame(scene, 0, (width, height), quality, &mut pixels);
+    (pixels, renderer)
 }
 
 impl Picture {

@@ -11,6 +11,7 @@ use crate::quality::{Quality, Rung};
 use crate::sample::ROUGH;
 use crate::scene::{Field, Figures, LightKind, Material, Pattern, Rules, Scene, Shading};
 use crate::shade::MAX_POINTS;
+use crate::trace::Shape;
 
 /// The machinery that a frame calls for, as the counters that it moves.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -28,8 +29,7 @@ impl Plan {
         let soft = scene.soft && quality.shadow_samples > 1 && !scene.emitters.is_empty();
         let lamps_are_hard = fills < scene.lights.len() || (!scene.emitters.is_empty() && !soft);
         let opaque = |field: &Field| {
-            let first = field.nodes.first().map_or(0, |node| node.material);
-            !field.shadowless && !scene.materials[first].is_transparent()
+            !field.shadowless && !scene.materials[Shape::Field(field).material()].is_transparent()
         };
         let penumbra = scene.penumbra() > 0.0 && lamps_are_hard && scene.fields.iter().any(opaque);
         let points = !scene.points.is_empty() && shows;

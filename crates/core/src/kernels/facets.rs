@@ -1,6 +1,6 @@
 //! Microfacets: how many there are and how much of them is seen.
 
-use super::{cross_wide, dot_wide, first, in_f64 as wide};
+use super::first;
 use crate::math::lanes::{F, splat};
 use crate::math::lanes_f64::{in_f64, splat_d};
 use crate::math::scalar::exp_wide;
@@ -74,8 +74,7 @@ fn of_beckmann([sine2, cos]: [f64; 2], m: f32) -> f32 {
 
 /// Squared sine and cosine of the angle between two vectors that are within rounding of length 1.
 fn angle(a: Vec3, b: Vec3) -> [f64; 2] {
-    let (a, b) = (wide(a), wide(b));
-    let length2 = dot_wide(a, a) * dot_wide(b, b);
-    let across = cross_wide(a, b);
-    [dot_wide(across, across) / length2, dot_wide(a, b) / length2.sqrt()]
+    let (a, b) = (a.as_dvec3(), b.as_dvec3());
+    let length2 = a.length_squared() * b.length_squared();
+    [a.cross(b).length_squared() / length2, a.dot(b) / length2.sqrt()]
 }

@@ -52,6 +52,7 @@ pub fn fold(x: f32, side: f32, most: f32) -> f32 {
 /// Share of a lamp of this radius in the middle of which the ray ends, at its origin plus its direction, that a
 /// field leaves to where it begins; 1 for all of it.
 pub fn field_light(ray: &Ray, field: &Field, radius: f32, quality: &Quality) -> f32 {
+    // The direction's length counts: it ends in the lamp.
     let rays = Rays8 { origin: V3::splat(ray.origin), direction: V3::splat(ray.direction) };
     first(trace::penumbra(&rays, field, radius, quality, TRUE, &mut Counters::default()))
 }

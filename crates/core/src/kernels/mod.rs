@@ -107,16 +107,3 @@ pub fn difference_of_products(a: f32, b: f32, c: f32, d: f32) -> f32 {
 fn first(lanes: F) -> f32 {
     lanes.as_array()[0]
 }
-
-/// A vector in f64, in which products of its coordinates are exact.
-fn in_f64(v: glam::Vec3) -> [f64; 3] {
-    v.to_array().map(f64::from)
-}
-
-fn dot_wide(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn cross_wide(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}

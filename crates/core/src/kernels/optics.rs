@@ -1,6 +1,6 @@
 //! How one ray splits at a surface.
 
-use super::{cross_wide, dot_wide, first, in_f64 as wide};
+use super::first;
 use crate::math::lanes::{V3, splat};
 use crate::shade::{self, dielectric};
 use glam::Vec3;
@@ -34,16 +34,14 @@ pub fn is_total(cos: f32, n_i: f32, n_t: f32) -> bool {
 /// directions of `d` and `n`, whose lengths don't count, and total reflection just where it is. Packets,
 /// [`shade::refract`], are f32: 4 u (1 + eta²)(1 + 1 / cosine behind).
 pub fn refract(d: Vec3, n: Vec3, eta: f32) -> Option<Vec3> {
-    let (d, n, eta) = (wide(d), wide(n), f64::from(eta));
-    let (d2, n2) = (dot_wide(d, d), dot_wide(n, n));
-    let across = cross_wide(n, d);
-    let sine2 = eta * eta * dot_wide(across, across) / (d2 * n2);
+    let (d, n, eta) = (d.as_dvec3(), n.as_dvec3(), f64::from(eta));
+    let (d2, n2) = (d.length_squared(), n.length_squared());
+    let across = n.cross(d);
+    let sine2 = eta * eta * across.length_squared() / (d2 * n2);
     if sine2.is_nan() || sine2 >= 1.0 {
         return None;
     }
     // Along the normal, and in the surface: n × (d × n) is the part of d across n, times n².
     let (into, along) = ((1.0 - sine2).sqrt() / n2.sqrt(), eta / (n2 * d2.sqrt()));
-    let side = cross_wide(across, n);
-    let part = |i: usize| (side[i] * along - n[i] * into) as f32;
-    Some(Vec3::new(part(0), part(1), part(2)))
+    Some((across.cross(n) * along - n * into).as_vec3())
 }

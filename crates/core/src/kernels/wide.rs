@@ -2,15 +2,12 @@
 //!
 //! The same arguments and results as the doors of the same names, within 1 ulp where those score up to 4, and hits just
 //! where there are any: an eye 1 mm over a planet, a wire 1000 km away. Where the exact result all but cancels, as for
-//! rays that begin on the surface, it is that of a shape changed by 2⁻⁵⁰ of sizes and distance. Axes and normals count by their directions, whatever
-//! rounding left of their lengths. Formulas as in `trace`: discriminants factored from cross products, roots q/A and
+//! rays that begin on the surface, it is that of a shape changed by 2⁻⁵⁰ of sizes and distance. Axes and normals
+//! count by their directions, whatever rounding left of their lengths. Formulas as in `trace`: discriminants factored from cross products, roots q/A and
 //! C/q (Haines, Günther and Akenine-Möller, Ray Tracing Gems ch. 7; Kahan; own expansion for the cone).
 
 use super::shapes::{Crossing, Ray, TriangleHit};
-use super::{cross_wide as cross, dot_wide as dot, in_f64 as wide};
-use glam::Vec3;
-
-type V = [f64; 3];
+use glam::{DVec3, Vec3};
 
 /// Where a line is inside a body, and by which parts it comes and goes.
 type Span = ([f64; 2], [u32; 2]);
@@ -18,13 +15,9 @@ type Span = ([f64; 2], [u32; 2]);
 const NEVER: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
 const ALWAYS: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 
-fn sub(a: Vec3, b: Vec3) -> V {
-    let (a, b) = (wide(a), wide(b));
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn length(v: V) -> f64 {
-    dot(v, v).sqrt()
+/// a - b, before rounding.
+fn sub(a: Vec3, b: Vec3) -> DVec3 {
+    a.as_dvec3() - b.as_dvec3()
 }
 
 /// A crossing in front of the ray, if there is one.
@@ -52,16 +45,16 @@ fn between(a: f64, b: f64, c: f64, d: f64) -> [f64; 2] {
 
 /// See [`sphere`](super::sphere).
 pub fn sphere(ray: &Ray, centre: Vec3, radius: f32) -> Option<Crossing> {
-    let (f, d, r) = (sub(ray.origin, centre), wide(ray.direction), f64::from(radius));
-    let (speed, off) = (length(d), length(cross(d, f)));
+    let (f, d, r) = (sub(ray.origin, centre), ray.direction.as_dvec3(), f64::from(radius));
+    let (speed, off) = (d.length(), d.cross(f).length());
     let disc = (r * speed - off) * (r * speed + off);
-    ahead((between(dot(d, d), dot(f, d), dot(f, f) - r * r, disc), [0; 2]))
+    ahead((between(d.dot(d), f.dot(d), f.dot(f) - r * r, disc), [0; 2]))
 }
 
 /// See [`plane`](super::plane).
 pub fn plane(ray: &Ray, point: Vec3, normal: Vec3) -> Option<f32> {
-    let n = wide(normal);
-    let t = (dot(n, sub(point, ray.origin)) / dot(n, wide(ray.direction))) as f32;
+    let n = normal.as_dvec3();
+    let t = (n.dot(sub(point, ray.origin)) / n.dot(ray.direction.as_dvec3())) as f32;
     (t > 0.0 && t < f32::INFINITY).then_some(t)
 }
 
@@ -74,8 +67,8 @@ struct Axial {
     height: f64,
     rise: f64,
     /// Direction × axis, and origin × axis.
-    n: V,
-    m: V,
+    n: DVec3,
+    m: DVec3,
     /// |n × m|.
     off: f64,
     axis: f64,
@@ -84,14 +77,14 @@ struct Axial {
 impl Axial {
     /// `anew` starts the ray where it is nearest to the reference: a cone's roots hang on how near that is.
     fn new(ray: &Ray, reference: Vec3, axis: Vec3, anew: bool) -> Self {
-        let (f, d, a) = (sub(ray.origin, reference), wide(ray.direction), wide(axis));
-        let start = if anew { -dot(f, d) / dot(d, d) } else { 0.0 };
-        let level = dot(f, a);
-        let f = [0, 1, 2].map(|i| f[i] + d[i] * start);
-        let (n, m) = (cross(d, a), cross(f, a));
+        let (f, d, a) = (sub(ray.origin, reference), ray.direction.as_dvec3(), axis.as_dvec3());
+        let start = if anew { -f.dot(d) / d.dot(d) } else { 0.0 };
+        let level = f.dot(a);
+        let f = f + d * start;
+        let (n, m) = (d.cross(a), f.cross(a));
         // Both are upright on the axis.
-        let off = dot(f, n).abs() * length(a);
-        Self { start, level, height: dot(f, a), rise: dot(d, a), n, m, off, axis: length(a) }
+        let off = f.dot(n).abs() * a.length();
+        Self { start, level, height: f.dot(a), rise: d.dot(a), n, m, off, axis: a.length() }
     }
 
     /// The interval `side`, cut by two heights.
@@ -124,13 +117,13 @@ pub fn capped_cylinder(ray: &Ray, base: Vec3, axis: Vec3, radius: f32, length: f
 
 fn bar(ray: &Ray, base: Vec3, axis: Vec3, radius: f32, range: [f32; 2]) -> Option<Crossing> {
     let ray = Axial::new(ray, base, axis, false);
-    let (a, r) = (dot(ray.n, ray.n), f64::from(radius) * ray.axis);
-    let c = dot(ray.m, ray.m) - r * r;
+    let (a, r) = (ray.n.dot(ray.n), f64::from(radius) * ray.axis);
+    let c = ray.m.dot(ray.m) - r * r;
     let side = if a == 0.0 {
         if c <= 0.0 { ALWAYS } else { NEVER }
     } else {
         let reach = r * a.sqrt();
-        between(a, dot(ray.n, ray.m), c, (reach - ray.off) * (reach + ray.off))
+        between(a, ray.n.dot(ray.m), c, (reach - ray.off) * (reach + ray.off))
     };
     ahead(ray.cut(side, range))
 }
@@ -145,11 +138,10 @@ pub fn capped_cone(ray: &Ray, apex: Vec3, axis: Vec3, slope: f32, range: [f32; 2
     let ray = Axial::new(ray, apex, axis, true);
     let k = f64::from(slope);
     let (rise, height) = (k * ray.rise, k * ray.height);
-    let a = dot(ray.n, ray.n) - rise * rise;
-    let b = dot(ray.n, ray.m) - rise * height;
-    let c = dot(ray.m, ray.m) - height * height;
-    let turned = [0, 1, 2].map(|i| ray.n[i] * height - ray.m[i] * rise);
-    let reach = length(turned);
+    let a = ray.n.dot(ray.n) - rise * rise;
+    let b = ray.n.dot(ray.m) - rise * height;
+    let c = ray.m.dot(ray.m) - height * height;
+    let reach = (ray.n * height - ray.m * rise).length();
     let disc = (reach - ray.off) * (reach + ray.off);
     let up = ray.rise > 0.0;
     let side = if a > 0.0 {
@@ -175,23 +167,23 @@ pub fn capped_cone(ray: &Ray, apex: Vec3, axis: Vec3, slope: f32, range: [f32; 2
 
 /// See [`triangle`](super::triangle); a ray along an edge hits, one in the plane misses.
 pub fn triangle(ray: &Ray, corners: [Vec3; 3]) -> Option<TriangleHit> {
-    let d = wide(ray.direction);
+    let d = ray.direction.as_dvec3();
     let [p, q, r] = corners;
     let [a, b, c] = corners.map(|p| sub(p, ray.origin));
     // Volumes over the edges, of one sign within.
-    let volume = |from: Vec3, to: Vec3, at: V| dot(d, cross(sub(to, from), at));
+    let volume = |from: Vec3, to: Vec3, at: DVec3| d.dot(sub(to, from).cross(at));
     let weights = [volume(q, r, b), volume(r, p, c), volume(p, q, a)];
     let sum = weights[0] + weights[1] + weights[2];
     let inside = weights.iter().all(|&w| w >= 0.0) || weights.iter().all(|&w| w <= 0.0);
-    let n = cross(sub(corners[1], corners[0]), sub(corners[2], corners[0]));
-    let t = (dot(n, a) / dot(n, d)) as f32;
+    let n = sub(q, p).cross(sub(r, p));
+    let t = (n.dot(a) / n.dot(d)) as f32;
     let hit = inside && sum != 0.0 && t > 0.0 && t < f32::INFINITY;
     hit.then(|| TriangleHit { t, weights: weights.map(|w| (w / sum) as f32) })
 }
 
 /// See [`slab`](super::slab).
 pub fn slab(ray: &Ray, lo: Vec3, hi: Vec3) -> Option<[f32; 2]> {
-    let (d, lo, hi) = (wide(ray.direction), sub(lo, ray.origin), sub(hi, ray.origin));
+    let (d, lo, hi) = (ray.direction.as_dvec3(), sub(lo, ray.origin), sub(hi, ray.origin));
     let (mut enter, mut exit) = (0.0_f64, f64::INFINITY);
     for i in 0..3 {
         let [near, far] = match d[i] {

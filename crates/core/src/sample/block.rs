@@ -1,6 +1,5 @@
 //! What is known of traced samples, in blocks of eight: a packet's results are stored as vectors.
 
-use crate::features;
 use crate::math::lanes::{F, U, V3, splat};
 use crate::math::{Vec3, number, whole};
 use crate::quality::Rung;
@@ -131,7 +130,7 @@ impl<'a> Sample<'a> {
     }
     /// Whether the first hit is of a mesh that an image is laid over.
     pub fn is_painted(self, stage: &Stage) -> bool {
-        features::IMAGES && self.id() >= 0.0 && stage.scene.is_painted(whole(self.id()) >> 2)
+        self.id() >= 0.0 && stage.scene.is_painted(whole(self.id()) >> 2)
     }
     /// The voxels that the first hit is of.
     pub fn voxels<'s>(self, stage: &Stage<'s>) -> Option<&'s Voxels> {

@@ -204,15 +204,21 @@ impl Field {
     /// A field of finite bodies, with the box around it.
     pub fn new(nodes: Vec<Node>) -> Self {
         let (mut lo, mut hi) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
-        let blend = nodes.iter().fold(0.0_f32, |k, n| k.max(n.blend));
-        for node in &nodes {
+        let field = Self { nodes, ..Self::default() };
+        let blend = field.blend();
+        for node in &field.nodes {
             let Some(half) = node.core() else { continue };
             let [x, y, z] = node.axes.unwrap_or_default().to_cols_array_2d().map(|c| Vec3::from(c).abs());
             let half = x * half.x + y * half.y + z * half.z + node.rounding + blend + ROOM;
             lo = lo.min(node.centre - half);
             hi = hi.max(node.centre + half);
         }
-        Self { nodes, lo, hi, ..Self::default() }
+        Self { lo, hi, ..field }
+    }
+
+    /// Radius of its widest smooth join.
+    pub fn blend(&self) -> f32 {
+        self.nodes.iter().fold(0.0, |k: f32, n| k.max(n.blend))
     }
 
     /// How much the field's value may change per unit of distance, at most.

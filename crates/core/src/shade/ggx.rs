@@ -39,7 +39,8 @@ pub fn masking(cos: F, alpha: F) -> F {
     whole.simd_gt(F::ZERO) & ((cos + cos) / whole)
 }
 
-/// V for these cosines, 0..=1; 0 where both are 0. Error at most 4 ulp. Heitz, JCGT 3(2), 2014. The same both ways, bit for bit.
+/// V for these cosines, 0..=1; 0 where both are 0. Error at most 4 ulp. Heitz, JCGT 3(2), 2014. The same both
+/// ways, bit for bit.
 #[inline(always)]
 pub fn visibility(n_l: F, n_v: F, alpha: F) -> F {
     let whole = n_l * smith(n_v, alpha) + n_v * smith(n_l, alpha);

@@ -49,7 +49,8 @@ fn cell(field: &Field, p: V3) -> V3 {
 }
 
 /// The quadratic smooth minimum min - (k - |a - b|)² / 4k (Quilez), and the weight of the larger
-/// number's gradient in it, up to ½; the plain minimum, bit for bit, where |a - b| >= k or k is 0. Error at most 2 u (|a| + |b| + k).
+/// number's gradient in it, up to ½; the plain minimum, bit for bit, where |a - b| >= k or k is 0. Error
+/// at most 2 u (|a| + |b| + k).
 #[inline(always)]
 pub fn smooth_min(a: F, b: F, k: f32) -> (F, F) {
     let mut least = a.at_most(b);
@@ -153,7 +154,7 @@ pub fn field(rays: &Rays8, field: &Field, limit: F, quality: &Quality, counters:
     }
     let mut near = [TRUE; Field::MOST];
     let (mut from, mut to) = (INFINITY, F::ZERO);
-    let blend = field.nodes.iter().fold(0.0, |k: f32, n| k.max(n.blend));
+    let blend = field.blend();
     for (node, near) in field.nodes.iter().zip(&mut near) {
         if let Some(half) = node.core() {
             let f = o - V3::splat(node.centre);

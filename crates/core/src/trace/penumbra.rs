@@ -43,7 +43,7 @@ pub fn penumbra(
     let square = d.dot(d);
     let far = square.sqrt();
     let mut near: Nodes = [TRUE; Field::MOST];
-    let blend = field.nodes.iter().fold(0.0, |k: f32, n| k.max(n.blend));
+    let blend = field.blend();
     for (node, near) in field.nodes.iter().zip(&mut near) {
         if let Some(half) = node.core() {
             let f = o - V3::splat(node.centre);

@@ -17,7 +17,7 @@ use super::lanes::{Eight, LANES, Reals, Words};
 use super::logistic::Stretch;
 use super::mixers::{Mixers, Place};
 use super::slots::{Slots, Table};
-use super::x86::{Walker, fact, mix};
+use super::x86::{MIX, Walker, fact, mix};
 
 /// The facts that each context sees; the last one of each has [`LAST`] added.
 ///
@@ -326,11 +326,12 @@ impl Model {
     }
 }
 
-/// [`mix`] of eight pairs.
+/// [`mix`] of all lanes.
 #[inline(always)]
 fn mix_all(a: Words, b: Words) -> Words {
-    let h = a * Words::all(0x2c1b_3c6d) + b * Words::all(0x9e37_79b1u32 as i32) + Words::all(0x0123_4567);
-    ((h ^ h >> 15) * Words::all(0x85eb_ca6bu32 as i32)) ^ h >> 13
+    let part = |i: usize| Words::all(MIX[i] as i32);
+    let h = a * part(0) + b * part(1) + part(2);
+    ((h ^ h >> 15) * part(3)) ^ h >> 13
 }
 
 /// Moves probabilities of 16 bits toward the target, 0 or 65535, by `share` / 32768 of the way.

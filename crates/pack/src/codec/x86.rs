@@ -312,11 +312,14 @@ fn shift(facts: &mut [u32; 64], start: usize, end: usize, by: usize) {
     }
 }
 
+/// Factors of [`mix`] for both words, what is added to their sum, and the factor of that.
+pub const MIX: [u32; 4] = [0x2c1b_3c6d, 0x9e37_79b1, 0x0123_4567, 0x85eb_ca6b];
+
 /// Mixes two words into one, every bit of which depends on every bit of both.
 #[inline(never)]
 pub fn mix(a: u32, b: u32) -> u32 {
-    let h = a.wrapping_mul(0x2c1b_3c6d).wrapping_add(b.wrapping_mul(0x9e37_79b1)).wrapping_add(0x0123_4567);
-    (h ^ h >> 15).wrapping_mul(0x85eb_ca6b) ^ h >> 13
+    let h = a.wrapping_mul(MIX[0]).wrapping_add(b.wrapping_mul(MIX[1])).wrapping_add(MIX[2]);
+    (h ^ h >> 15).wrapping_mul(MIX[3]) ^ h >> 13
 }
 
 #[cfg(test)]

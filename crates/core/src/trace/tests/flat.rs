@@ -6,7 +6,7 @@
 use crate::math::Vec3;
 use crate::math::lanes::{F, splat};
 use crate::scene::{Plane, Triangle};
-use crate::trace::check::{Inside, Line, Random, Tally, U, packet, streams, two_to};
+use crate::trace::check::{Inside, Line, Random, Tally, U, packet, sweep, two_to};
 use crate::trace::{Rays8, plane, triangle};
 use glam::{DVec2, DVec3};
 
@@ -96,13 +96,7 @@ fn named_planes() {
 #[test]
 fn random_planes() {
     let mut tally = Tally::new("plane");
-    let each = 25_000;
-    let cases = streams(1).flat_map(|stream| (0..each).map(move |case| (stream, case)));
-    let mut random = Random::new(40);
-    for (stream, case) in cases {
-        if case == 0 {
-            random = Random::new(1000 * stream + 40);
-        }
+    sweep(1, 40, 25_000, |random| {
         let n = random.direction();
         let size = random.size(-10, 10);
         let s = floor(random.vector(-10, 14), n, if random.one_in(2) { f32::INFINITY } else { size });
@@ -113,7 +107,7 @@ fn random_planes() {
             random.ray(target, n, across, size)
         });
         judge_plane(&mut tally, &s, &rays);
-    }
+    });
     tally.finish(4.0);
 }
 
@@ -153,13 +147,7 @@ fn named_triangles() {
 #[test]
 fn random_triangles() {
     let mut tally = Tally::new("triangle");
-    let each = 40_000;
-    let cases = streams(1).flat_map(|stream| (0..each).map(move |case| (stream, case)));
-    let mut random = Random::new(50);
-    for (stream, case) in cases {
-        if case == 0 {
-            random = Random::new(1000 * stream + 50);
-        }
+    sweep(1, 50, 40_000, |random| {
         let size = random.size(-12, 12);
         let at = random.vector(-6, 8) * size;
         let e = [random.direction() * size, random.direction() * (size * random.size(-8, 1))];
@@ -175,7 +163,7 @@ fn random_triangles() {
             random.ray(at + e[0] * x + e[1] * y, n, e[0].normalize_or(n), size)
         });
         judge_triangle(&mut tally, &s, &rays);
-    }
+    });
     assert!(tally.hits > 50_000, "{} hits", tally.hits);
     tally.finish(4.0);
 }

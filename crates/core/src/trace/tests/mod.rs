@@ -4,5 +4,6 @@ mod flat;
 mod packets;
 mod round;
 mod secondary;
+mod slender;
 mod sphere;
 mod texture;

@@ -158,19 +158,17 @@ fn poisoned_rays_neither_panic_nor_hit_at_nan() {
                 let replay = || format!("{scene:?} {ray:?}");
                 assert!(t > 0.0 && (t < f32::INFINITY) == (id >= 0.0), "{t} {id} {}", replay());
             }
-            let code = occlusion(
-                &scene,
-                &Quality::PRESETS[3].1,
-                &stage.bits,
-                &rays,
-                (TRUE, 0.0),
-                u64::MAX,
-                &mut Counters::default(),
-            );
+            let code = shadow(&stage, &rays);
             assert!(code.simd_ge(all(BLOCKED)).all(), "{code:?} {eight:?}");
             found(&stage, &rays);
         }
     }
+}
+
+/// Visibility codes of a lamp at the rays' ends, with hard shadows.
+fn shadow(stage: &Stage, rays: &Rays8) -> F {
+    let mut counters = Counters::default();
+    occlusion(stage.scene, &stage.quality, &stage.bits, rays, (TRUE, 0.0), u64::MAX, &mut counters)
 }
 
 /// A row of balls along z at 2, 4, 6, …, of glass where asked, and the lamp at `lamp`.
@@ -187,16 +185,7 @@ fn row(glass: &[bool], lamp: f32) -> f32 {
     };
     let stage = Stage::new(&scene, &Quality::named("high").unwrap(), 8, 8);
     let rays = packet(|| (Vec3::ZERO, Vec3::Z * lamp));
-    occlusion(
-        &scene,
-        &Quality::PRESETS[3].1,
-        &stage.bits,
-        &rays,
-        (TRUE, 0.0),
-        u64::MAX,
-        &mut Counters::default(),
-    )
-    .to_array()[3]
+    shadow(&stage, &rays).to_array()[3]
 }
 
 #[test]

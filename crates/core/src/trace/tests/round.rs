@@ -8,7 +8,7 @@
 
 use crate::math::Vec3;
 use crate::scene::{Cone, Cylinder};
-use crate::trace::check::{Inside, Line, Random, Tally, U, packet, streams};
+use crate::trace::check::{Inside, Line, Tally, U, packet, sweep};
 use crate::trace::{Rays8, cone, cylinder};
 use glam::DVec3;
 
@@ -20,7 +20,7 @@ fn double(k: i32) -> f64 {
 const INF: f64 = f64::INFINITY;
 
 /// Streams that each law draws from.
-const STREAMS: u32 = 6;
+pub(super) const STREAMS: u32 = 6;
 
 /// A ray along and across an axis.
 struct Axial {
@@ -132,24 +132,24 @@ fn finite(x: f32) -> f64 {
     if x < f32::INFINITY { f64::from(x) } else { 0.0 }
 }
 
-fn judge_cylinder(tally: &mut Tally, s: &Cylinder, rays: &Rays8) {
+pub(super) fn judge_cylinder(tally: &mut Tally, s: &Cylinder, rays: &Rays8) {
     let size = f64::from(s.radius) + finite(s.length) + own(s.base);
     let reach = |ray: &Line| 2.0 * (ray.o - s.base.as_dvec3()).length() + size;
     tally.body(rays, &cylinder(rays, s), |ray, skin| cylinder_truth(s, ray, skin), reach, [false; 2], s);
 }
 
-fn judge_cone(tally: &mut Tally, s: &Cone, rays: &Rays8) {
+pub(super) fn judge_cone(tally: &mut Tally, s: &Cone, rays: &Rays8) {
     let size = finite(s.range[1]).max(f64::from(s.range[0])) + own(s.apex);
     let reach = |ray: &Line| 2.0 * (ray.o - s.apex.as_dvec3()).length() + size;
     let open = [s.range[0] > 0.0 && !s.caps[0], !s.caps[1]];
     tally.body(rays, &cone(rays, s), |ray, skin| cone_truth(s, ray, skin), reach, open, s);
 }
 
-fn bar(base: Vec3, axis: Vec3, radius: f32, length: f32) -> Cylinder {
+pub(super) fn bar(base: Vec3, axis: Vec3, radius: f32, length: f32) -> Cylinder {
     Cylinder { base, axis, radius, length, material: 0 }
 }
 
-fn frustum(apex: Vec3, axis: Vec3, slope: f32, range: [f32; 2], caps: [bool; 2]) -> Cone {
+pub(super) fn frustum(apex: Vec3, axis: Vec3, slope: f32, range: [f32; 2], caps: [bool; 2]) -> Cone {
     Cone { apex, axis, slope, range, caps, material: 0 }
 }
 
@@ -207,29 +207,26 @@ fn a_ray_in_a_caps_plane_hits_the_closed_bar() {
 fn random_cylinders() {
     for kind in 0..2 {
         let mut tally = Tally::new(["finite cylinder", "infinite cylinder"][kind as usize]);
-        for stream in streams(STREAMS) {
-            let mut random = Random::new(1000 * stream + 10 + kind);
-            for _ in 0..8_000 {
-                let r = random.size(-14, 14);
-                let length = r * random.size(-7, 9);
-                let axis = random.direction();
-                let base = random.vector(-3, 12) * r;
-                let s = bar(base, axis, r, if kind == 1 { f32::INFINITY } else { length });
-                let rays = packet(|| {
-                    let any = random.direction();
-                    let n = (any - axis * any.dot(axis)).normalize_or(axis.any_orthogonal_vector());
-                    let lift = 1.0 + if random.one_in(2) { random.signed(-20, 1) } else { 0.0 };
-                    let height = match random.bits() % 4 {
-                        0 => 0.0,
-                        1 => length,
-                        _ => length * random.range(-0.1, 1.1),
-                    };
-                    let inwards = if random.one_in(3) { random.range(0.0, 1.0) } else { 1.0 };
-                    random.ray(s.base + axis * height + n * (r * lift * inwards), n, axis, r)
-                });
-                judge_cylinder(&mut tally, &s, &rays);
-            }
-        }
+        sweep(STREAMS, 10 + kind, 8_000, |random| {
+            let r = random.size(-14, 14);
+            let length = r * random.size(-7, 9);
+            let axis = random.direction();
+            let base = random.vector(-3, 12) * r;
+            let s = bar(base, axis, r, if kind == 1 { f32::INFINITY } else { length });
+            let rays = packet(|| {
+                let any = random.direction();
+                let n = (any - axis * any.dot(axis)).normalize_or(axis.any_orthogonal_vector());
+                let lift = 1.0 + if random.one_in(2) { random.signed(-20, 1) } else { 0.0 };
+                let height = match random.bits() % 4 {
+                    0 => 0.0,
+                    1 => length,
+                    _ => length * random.range(-0.1, 1.1),
+                };
+                let inwards = if random.one_in(3) { random.range(0.0, 1.0) } else { 1.0 };
+                random.ray(s.base + axis * height + n * (r * lift * inwards), n, axis, r)
+            });
+            judge_cylinder(&mut tally, &s, &rays);
+        });
         assert!(tally.hits > 100_000, "{} hits", tally.hits);
         tally.finish(4.0);
     }
@@ -288,140 +285,40 @@ fn named_cones() {
     tally.finish(4.0);
 }
 
-/// Far from the world's origin the middle of a thin body is rounded by more than the body is wide.
-#[test]
-fn thin_bodies_far_from_the_origin_are_hit() {
-    let (mut bars, mut hats) = (Tally::new("thin bar, far"), Tally::new("thin cone, far"));
-    for stream in streams(1) {
-        let mut random = Random::new(1000 * stream + 70);
-        for _ in 0..10_000 {
-            let x = random.size(8, 20);
-            let far = Vec3::new(x, random.range(-1.0, 1.0), random.range(-1.0, 1.0));
-            // About as long as the grain of x.
-            let height = (x.next_up() - x) * random.size(-3, 4);
-            let (axis, size, k) = (random.direction(), height * random.size(-8, 0), random.size(-6, 0));
-            let origin = far + random.direction() * (height * random.size(0, 8));
-            let end = if random.one_in(2) { 0.01 } else { 0.99 };
-            let direction = (axis * (height * end) - (origin - far)).normalize_or(axis);
-            // Alone: a body is far if it is for all rays.
-            let rays = packet(|| (origin, direction));
-            judge_cylinder(&mut bars, &bar(far, axis, size, height), &rays);
-            judge_cone(&mut hats, &frustum(far, axis, k, [0.0, height], [true; 2]), &rays);
-        }
-    }
-    assert!(bars.hits.min(hats.hits) > 50_000, "{} {} hits", bars.hits, hats.hits);
-    bars.finish(4.0);
-    hats.finish(4.0);
-}
-
-/// A line through the tip of a closed cone must not slip between side and end.
-#[test]
-fn rays_through_the_tip_hit() {
-    let mut random = Random::new(20);
-    for _ in 0..20_000 {
-        let axis = random.direction();
-        let apex = random.vector(-4, 8);
-        let s = frustum(apex, axis, random.size(-3, 3), [0.0, 1.0], [random.one_in(2), true]);
-        let rays = packet(|| {
-            let side = axis.any_orthogonal_vector() * s.slope * random.range(-0.9, 0.9);
-            let d = crate::math::normalize(axis + side) * if random.one_in(2) { 1.0 } else { -1.0 };
-            (apex - d * random.size(-2, 4), d)
-        });
-        let (t, part) = cone(&rays, &s).first();
-        let wrong = t.simd_le(crate::math::lanes::ZERO);
-        assert!(!wrong.any(), "{s:?} {:?} {:?} {t:?} {part:?}", rays.origin, rays.direction);
-    }
-}
-
 #[test]
 fn random_cones() {
     for kind in 0..4 {
         let names = ["infinite cone", "pointed cone", "frustum, closed", "frustum, open"];
         let mut tally = Tally::new(names[kind as usize]);
-        for stream in streams(STREAMS) {
-            let mut random = Random::new(1000 * stream + 30 + kind);
-            for _ in 0..4_000 {
-                let h = random.size(-14, 14);
-                let axis = random.direction();
-                let k = random.size(-7, 4);
-                let from = if kind < 2 { 0.0 } else { h * random.range(0.0, 0.99) };
-                let caps = match kind {
-                    3 => [[false, false], [false, true], [true, false]][random.bits() as usize % 3],
-                    _ => [true; 2],
-                };
-                let range = [from, if kind == 0 { f32::INFINITY } else { h }];
-                let s = frustum(random.vector(-3, 10) * h, axis, k, range, caps);
-                let rays = packet(|| {
-                    let any = random.direction();
-                    let out = (any - axis * any.dot(axis)).normalize_or(axis.any_orthogonal_vector());
-                    let height = match random.bits() % 5 {
-                        0 => from,
-                        1 => h,
-                        2 => h * random.signed(-20, 0),
-                        _ => from + (h - from) * random.range(-0.1, 1.1),
-                    };
-                    let lift = 1.0 + if random.one_in(2) { random.signed(-20, 1) } else { 0.0 };
-                    let inwards = if random.one_in(3) { random.range(0.0, 1.0) } else { 1.0 };
-                    let target = s.apex + axis * height + out * (height * k * lift * inwards);
-                    let along = if random.one_in(2) { axis } else { crate::math::normalize(axis + out * k) };
-                    random.ray(target, crate::math::normalize(out - axis * k), along, h * k.min(1.0))
-                });
-                judge_cone(&mut tally, &s, &rays);
-            }
-        }
-        assert!(tally.hits > 50_000, "{} hits", tally.hits);
-        tally.finish(4.0);
-    }
-}
-
-/// Within a few roundings of the plane of an end: does the ray rise through it, or fall?
-#[test]
-fn rays_along_an_end() {
-    let mut bars = Tally::new("along a bar's end");
-    let mut hats = Tally::new("along a cone's end");
-    for stream in streams(STREAMS) {
-        let mut random = Random::new(1000 * stream + 50);
-        for _ in 0..2_000 {
-            let (h, axis, k) = (random.size(-8, 8), random.direction(), random.size(-4, 4));
-            let base = random.vector(-3, 6) * h;
-            let bar = bar(base, axis, h * k, h);
-            let hat = frustum(base, axis, k, [0.0, h], [true; 2]);
-            let rays = packet(|| {
-                let any = random.direction();
-                let d = (any - axis * any.dot(axis)).normalize_or(axis.any_orthogonal_vector());
-                let side = crate::math::cross(d, axis) * (h * k * random.range(-0.9, 0.9));
-                let end = base + axis * if random.one_in(4) { 0.0 } else { h };
-                (end + side - d * (h * k * random.signed(-6, 6)), d + axis * random.signed(-28, -22))
-            });
-            judge_cylinder(&mut bars, &bar, &rays);
-            judge_cone(&mut hats, &hat, &rays);
-        }
-    }
-    assert!(bars.hits.min(hats.hits) > 10_000, "{} {} hits", bars.hits, hats.hits);
-    bars.finish(4.0);
-    hats.finish(4.0);
-}
-
-/// Within a few roundings of a line of the side, through the tip: on which side of it is the ray?
-#[test]
-fn rays_along_the_side_through_the_tip() {
-    let mut tally = Tally::new("along a cone's side");
-    for stream in streams(STREAMS) {
-        let mut random = Random::new(1000 * stream + 60);
-        for _ in 0..2_000 {
-            let (h, axis, k) = (random.size(-8, 8), random.direction(), random.size(-6, 4));
-            let end = if random.one_in(2) { f32::INFINITY } else { h };
-            let s = frustum(random.vector(-3, 6) * h, axis, k, [0.0, end], [true; 2]);
+        sweep(STREAMS, 30 + kind, 4_000, |random| {
+            let h = random.size(-14, 14);
+            let axis = random.direction();
+            let k = random.size(-7, 4);
+            let from = if kind < 2 { 0.0 } else { h * random.range(0.0, 0.99) };
+            let caps = match kind {
+                3 => [[false, false], [false, true], [true, false]][random.bits() as usize % 3],
+                _ => [true; 2],
+            };
+            let range = [from, if kind == 0 { f32::INFINITY } else { h }];
+            let s = frustum(random.vector(-3, 10) * h, axis, k, range, caps);
             let rays = packet(|| {
                 let any = random.direction();
                 let out = (any - axis * any.dot(axis)).normalize_or(axis.any_orthogonal_vector());
-                let d = crate::math::normalize(axis + out * k) + random.direction() * random.signed(-28, -22);
-                let d = if random.one_in(2) { d } else { -d };
-                (s.apex + d * (h * random.signed(-6, 6)), d)
+                let height = match random.bits() % 5 {
+                    0 => from,
+                    1 => h,
+                    2 => h * random.signed(-20, 0),
+                    _ => from + (h - from) * random.range(-0.1, 1.1),
+                };
+                let lift = 1.0 + if random.one_in(2) { random.signed(-20, 1) } else { 0.0 };
+                let inwards = if random.one_in(3) { random.range(0.0, 1.0) } else { 1.0 };
+                let target = s.apex + axis * height + out * (height * k * lift * inwards);
+                let along = if random.one_in(2) { axis } else { crate::math::normalize(axis + out * k) };
+                random.ray(target, crate::math::normalize(out - axis * k), along, h * k.min(1.0))
             });
             judge_cone(&mut tally, &s, &rays);
-        }
+        });
+        assert!(tally.hits > 50_000, "{} hits", tally.hits);
+        tally.finish(4.0);
     }
-    assert!(tally.hits > 10_000, "{} hits", tally.hits);
-    tally.finish(4.0);
 }

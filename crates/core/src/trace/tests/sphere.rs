@@ -3,7 +3,7 @@
 use crate::math::Vec3;
 use crate::math::lanes::splat;
 use crate::scene::Sphere;
-use crate::trace::check::{Inside, Line, Random, Tally, packet, streams, two_to};
+use crate::trace::check::{Inside, Line, Random, Tally, packet, sweep, two_to};
 use crate::trace::{Rays8, sphere};
 
 fn ball(centre: Vec3, radius: f32) -> Sphere {
@@ -67,13 +67,7 @@ fn named_cases() {
 #[test]
 fn random_cases() {
     let mut tally = Tally::new("sphere");
-    let each = 50_000;
-    let cases = streams(1).flat_map(|stream| (0..each).map(move |case| (stream, case)));
-    let mut random = Random::new(1);
-    for (stream, case) in cases {
-        if case == 0 {
-            random = Random::new(1000 * stream + 1);
-        }
+    sweep(1, 1, 50_000, |random| {
         let r = random.size(-14, 14);
         let s = ball(random.vector(-3, 12) * r, r);
         let rays = packet(|| {
@@ -82,7 +76,7 @@ fn random_cases() {
             random.ray(s.centre + n * r * (1.0 + lift), n, random_axis(n), r)
         });
         judge(&mut tally, &s, &rays);
-    }
+    });
     assert!(tally.hits > 100_000, "{} hits", tally.hits);
     tally.finish(4.0);
 }

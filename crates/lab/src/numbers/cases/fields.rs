@@ -13,12 +13,8 @@ pub const KERNELS: &[Kernel] = &[
             list([&p.to_array(), &[r]])
         },
         |x, _| v3(x, 0).as_dvec3().length() - f64::from(x[3]),
-        |x| kernels::sdf(&Node::sphere(Vec3::ZERO, x[3]), v3(x, 0).into()),
-        |x| {
-            let x8 = x;
-            let x = &shape(x);
-            trace::form(&Node::sphere(Vec3::ZERO, x[3]), packet(x8, 0))
-        }
+        |x| of_one(ball, x),
+        |x| of_eight(ball, x)
     ),
     kernel!(
         "distance from a box",
@@ -33,8 +29,8 @@ pub const KERNELS: &[Kernel] = &[
             let q = v3(x, 0).as_dvec3().abs() - v3(x, 3).as_dvec3();
             q.max(glam::DVec3::ZERO).length() + q.max_element().min(0.0)
         },
-        |x| kernels::sdf(&Node::cuboid(Vec3::ZERO, v3(x, 3), 0.0), v3(x, 0).into()),
-        |x| trace::form(&Node::cuboid(Vec3::ZERO, v3(&shape(x), 3), 0.0), packet(x, 0))
+        |x| of_one(cuboid, x),
+        |x| of_eight(cuboid, x)
     ),
     kernel!(
         "distance from a ring",
@@ -50,11 +46,8 @@ pub const KERNELS: &[Kernel] = &[
             let out = (p.x * p.x + p.z * p.z).sqrt() - f64::from(x[3]);
             (out * out + p.y * p.y).sqrt() - f64::from(x[4])
         },
-        |x| kernels::sdf(&Node::torus(Vec3::ZERO, x[3], x[4]), v3(x, 0).into()),
-        |x| {
-            let s = shape(x);
-            trace::form(&Node::torus(Vec3::ZERO, s[3], s[4]), packet(x, 0))
-        }
+        |x| of_one(ring, x),
+        |x| of_eight(ring, x)
     ),
     kernel!(
         "distance from a round box",
@@ -69,12 +62,8 @@ pub const KERNELS: &[Kernel] = &[
             let q = v3(x, 0).as_dvec3().abs() - (v3(x, 3).as_dvec3() - f64::from(x[6]));
             q.max(glam::DVec3::ZERO).length() + q.max_element().min(0.0) - f64::from(x[6])
         },
-        |x| kernels::sdf(&Node::cuboid(Vec3::ZERO, v3(x, 3), x[6]), v3(x, 0).into()),
-        |x| {
-            let x8 = x;
-            let x = &shape(x);
-            trace::form(&Node::cuboid(Vec3::ZERO, v3(x, 3), x[6]), packet(x8, 0))
-        }
+        |x| of_one(round_box, x),
+        |x| of_eight(round_box, x)
     ),
     kernel!(
         "distance from a capsule",
@@ -88,12 +77,8 @@ pub const KERNELS: &[Kernel] = &[
             let (p, half) = (v3(x, 0).as_dvec3(), f64::from(x[3]));
             (p - glam::DVec3::Y * p.y.clamp(-half, half)).length() - f64::from(x[4])
         },
-        |x| kernels::sdf(&Node::capsule(Vec3::ZERO, x[3], x[4]), v3(x, 0).into()),
-        |x| {
-            let x8 = x;
-            let x = &shape(x);
-            trace::form(&Node::capsule(Vec3::ZERO, x[3], x[4]), packet(x8, 0))
-        }
+        |x| of_one(capsule, x),
+        |x| of_eight(capsule, x)
     ),
     kernel!(
         "distance from a cylinder",
@@ -108,12 +93,8 @@ pub const KERNELS: &[Kernel] = &[
             let (out, up) = ((p.x * p.x + p.z * p.z).sqrt() - f64::from(x[4]), p.y.abs() - f64::from(x[3]));
             glam::DVec2::new(out.max(0.0), up.max(0.0)).length() + out.max(up).min(0.0)
         },
-        |x| kernels::sdf(&Node::cylinder(Vec3::ZERO, x[3], x[4]), v3(x, 0).into()),
-        |x| {
-            let x8 = x;
-            let x = &shape(x);
-            trace::form(&Node::cylinder(Vec3::ZERO, x[3], x[4]), packet(x8, 0))
-        }
+        |x| of_one(cylinder, x),
+        |x| of_eight(cylinder, x)
     ),
     kernel!(
         "distance from a plane",
@@ -125,11 +106,44 @@ pub const KERNELS: &[Kernel] = &[
             list([&q.to_array(), &p.to_array(), &n.to_array()])
         },
         |x, _| (v3(x, 0).as_dvec3() - v3(x, 3).as_dvec3()).dot(v3(x, 6).as_dvec3()),
-        |x| kernels::sdf(&Node::plane(v3(x, 3), v3(x, 6)), v3(x, 0).into()),
-        |x| {
-            let x8 = x;
-            let x = &shape(x);
-            trace::form(&Node::plane(v3(x, 3), v3(x, 6)), packet(x8, 0))
-        }
+        |x| of_one(plane, x),
+        |x| of_eight(plane, x)
     ),
 ];
+
+/// Distance from the form that a list of arguments makes, of the point that it begins with.
+fn of_one(form: fn(&Arguments<f32>) -> Node, x: &Arguments<f32>) -> f32 {
+    kernels::sdf(&form(x), v3(x, 0).into())
+}
+
+fn of_eight(form: fn(&Arguments<f32>) -> Node, x: &Arguments<F>) -> F {
+    trace::form(&form(&shape(x)), packet(x, 0))
+}
+
+fn ball(x: &Arguments<f32>) -> Node {
+    Node::sphere(Vec3::ZERO, x[3])
+}
+
+fn cuboid(x: &Arguments<f32>) -> Node {
+    Node::cuboid(Vec3::ZERO, v3(x, 3), 0.0)
+}
+
+fn ring(x: &Arguments<f32>) -> Node {
+    Node::torus(Vec3::ZERO, x[3], x[4])
+}
+
+fn round_box(x: &Arguments<f32>) -> Node {
+    Node::cuboid(Vec3::ZERO, v3(x, 3), x[6])
+}
+
+fn capsule(x: &Arguments<f32>) -> Node {
+    Node::capsule(Vec3::ZERO, x[3], x[4])
+}
+
+fn cylinder(x: &Arguments<f32>) -> Node {
+    Node::cylinder(Vec3::ZERO, x[3], x[4])
+}
+
+fn plane(x: &Arguments<f32>) -> Node {
+    Node::plane(v3(x, 3), v3(x, 6))
+}

@@ -34,14 +34,7 @@ pub const KERNELS: &[Kernel] = &[
         "repetition",
         repeat,
         Measure::Unit(|x, _| f64::from(x[0].abs() + x[1])),
-        |random| loop {
-            let (x, side) = (random.signed(-4, 17), random.size(-4, 4));
-            let cell = f64::from(x) / f64::from(side) + 0.5;
-            // Next to a border either cell is right.
-            if (cell - cell.round()).abs() > 4.0 * U * cell.abs() {
-                return list([&[x, side]]);
-            }
-        },
+        |random| list([&cell_draw(random)]),
         |x, _| {
             let (x, side) = (f64::from(x[0]), f64::from(x[1]));
             x - side * (x / side + 0.5).floor()
@@ -53,13 +46,7 @@ pub const KERNELS: &[Kernel] = &[
         "repetition, bounded",
         repeat_bounded,
         Measure::Unit(|x, _| f64::from(x[0].abs() + x[1])),
-        |random| loop {
-            let (x, side) = (random.signed(-4, 17), random.size(-4, 4));
-            let cell = f64::from(x) / f64::from(side) + 0.5;
-            if (cell - cell.round()).abs() > 4.0 * U * cell.abs() {
-                return list([&[x, side, (random.bits() % 64) as f32]]);
-            }
-        },
+        |random| list([&cell_draw(random), &[(random.bits() % 64) as f32]]),
         |x, _| {
             let [x, side, most] = vector(x, 0).map(f64::from);
             x - side * (x / side + 0.5).floor().clamp(-most, most)
@@ -124,6 +111,18 @@ pub const KERNELS: &[Kernel] = &[
         |x| sampling::cosine(packet(x, 0), (x[3], x[4])).z
     ),
 ];
+
+/// A place on an axis, and the side of its cells.
+fn cell_draw(random: &mut Random) -> [f32; 2] {
+    loop {
+        let (x, side) = (random.signed(-4, 17), random.size(-4, 4));
+        let cell = f64::from(x) / f64::from(side) + 0.5;
+        // Next to a border either cell is right.
+        if (cell - cell.round()).abs() > 4.0 * U * cell.abs() {
+            return [x, side];
+        }
+    }
+}
 
 /// Two distances and a radius: often within the blend, now and then without one.
 fn join_draw(random: &mut Random) -> Arguments<f32> {
