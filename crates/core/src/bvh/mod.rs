@@ -9,8 +9,6 @@ mod build;
 mod tests;
 mod walk;
 
-pub use walk::Stack;
-
 use crate::math::Vec3;
 use crate::math::lanes::{F, LANES};
 

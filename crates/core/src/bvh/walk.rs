@@ -15,30 +15,8 @@
 
 use super::{EMPTY, LEAF_BIT, Node, Tree, range};
 use crate::counters::{Counter, Counters};
-use crate::math::lanes::{Bound, F, greatest, least, splat};
+use crate::math::lanes::{Bound, F, LANES, greatest, least, splat};
 use crate::trace::Rays8;
-
-/// What is still to be visited, of a tree and of those in its leaves, with the distance from which
-/// on it may be met.
-///
-/// A node adds at most seven, and no tree is deeper than 20 nodes.
-pub struct Stack {
-    entries: [(u32, f32); 320],
-    len: usize,
-}
-
-impl Stack {
-    /// Nothing to visit.
-    pub fn new() -> Self {
-        Self { entries: [(0, 0.0); 320], len: 0 }
-    }
-}
-
-impl Default for Stack {
-    fn default() -> Self {
-        Self::new()
-    }
-}
 
 /// Rays as intervals, along one axis.
 #[derive(Clone, Copy)]
@@ -82,7 +60,61 @@ impl Node {
     }
 }
 
+/// A walk through a tree.
+struct Walker<'a> {
+    tree: &'a Tree,
+    axes: &'a [Axis; 3],
+    /// Distance up to which leaves are of interest.
+    limit: f32,
+    counters: &'a mut Counters,
+    leaf: &'a mut dyn FnMut(&[u32], &mut Counters) -> f32,
+}
+
+impl Walker<'_> {
+    /// Visits a node, and then what of its children may be met before the limit: no deeper than 20 calls.
+    fn visit(&mut self, node: usize) {
+        self.counters.add(Counter::NodeVisits, 1);
+        let node = &self.tree.nodes[node];
+        let (enter, mut met) = node.test(self.axes, splat(self.limit));
+        // The nearest first.
+        let mut queue = [(0, 0.0); LANES];
+        let mut len = 0;
+        while met != 0 {
+            let lane = met.trailing_zeros() as usize & 7;
+            met &= met - 1;
+            let entry = (node.child[lane], enter.as_array()[lane]);
+            if entry.0 == EMPTY {
+                continue;
+            }
+            let mut at = len;
+            len += 1;
+            while at > 0 && queue[at - 1].1 > entry.1 {
+                queue[at] = queue[at - 1];
+                at -= 1;
+            }
+            queue[at] = entry;
+        }
+        for &(child, from) in &queue[..len] {
+            if from > self.limit {
+                return;
+            }
+            if child & LEAF_BIT != 0 {
+                self.limit = (self.leaf)(&self.tree.order[range(child)], self.counters);
+            } else {
+                self.visit(child as usize);
+            }
+        }
+    }
+}
+
 impl Tree {
+    /// How far boxes must be widened for `rays`, for what rounding may do to where these meet them.
+    #[inline(never)]
+    pub fn room(&self, rays: &Rays8) -> f32 {
+        let reach = self.bounds.lo.abs().max(self.bounds.hi.abs()).max_element();
+        (greatest(rays.origin.max_abs()).as_array()[0] + reach) * (1.0 / 1_048_576.0)
+    }
+
     /// Calls `leaf` with the leaves that one of `rays`, or a ray between them, may meet at a
     /// distance up to `limit`: about the nearest first. It returns the new limit. Of a `single` ray, in all
     /// lanes, no range is to be sought.
@@ -90,54 +122,17 @@ impl Tree {
     pub fn walk(
         &self,
         (rays, single): (&Rays8, bool),
-        mut limit: f32,
-        stack: &mut Stack,
+        limit: f32,
         counters: &mut Counters,
-        leaf: &mut dyn FnMut(&[u32], &mut Stack, &mut Counters) -> f32,
+        leaf: &mut dyn FnMut(&[u32], &mut Counters) -> f32,
     ) {
         if self.is_empty() {
             return;
         }
         let Rays8 { origin: o, direction: d } = rays;
-        let reach = self.bounds.lo.abs().max(self.bounds.hi.abs()).max_element();
-        let room = (greatest(o.max_abs()) + splat(reach)) * splat(1.0 / 1_048_576.0);
+        let room = splat(self.room(rays));
         let axis = |o: F, d: F| Axis::new(o, d, room, single);
         let axes = [axis(o.x, d.x), axis(o.y, d.y), axis(o.z, d.z)];
-        let base = stack.len;
-        let mut next = (0, 0.0);
-        loop {
-            let (child, from) = next;
-            if from <= limit {
-                if child & LEAF_BIT != 0 {
-                    limit = leaf(&self.order[range(child)], stack, counters);
-                } else {
-                    counters.add(Counter::NodeVisits, 1);
-                    let node = &self.nodes[child as usize];
-                    let (enter, mut met) = node.test(&axes, splat(limit));
-                    let first = stack.len;
-                    while met != 0 {
-                        let lane = met.trailing_zeros() as usize & 7;
-                        met &= met - 1;
-                        let entry = (node.child[lane], enter.as_array()[lane]);
-                        if entry.0 == EMPTY {
-                            continue;
-                        }
-                        // The farthest lie lowest.
-                        let mut at = stack.len;
-                        stack.len += 1;
-                        while at > first && stack.entries[at - 1].1 < entry.1 {
-                            stack.entries[at] = stack.entries[at - 1];
-                            at -= 1;
-                        }
-                        stack.entries[at] = entry;
-                    }
-                }
-            }
-            if stack.len == base {
-                return;
-            }
-            stack.len -= 1;
-            next = stack.entries[stack.len];
-        }
+        Walker { tree: self, axes: &axes, limit, counters, leaf }.visit(0);
     }
 }

@@ -1,7 +1,6 @@
 //! Whether facets may lie between rays: in a cell of the picture, or between it and a lamp.
 
 use super::Assembly;
-use crate::bvh::Stack;
 use crate::counters::Counters;
 use crate::math::lanes::{F, V3, greatest, splat, twice};
 use crate::math::{Vec3, cross};
@@ -70,14 +69,14 @@ impl Assembly {
         let ends = twice(&ends);
         let inverse = F::ONE / ends;
         let mut limit = greatest(ends).as_array()[0];
-        self.tree.walk((&rays, false), limit, &mut Stack::new(), counters, &mut |items, stack, counters| {
+        self.tree.walk((&rays, false), limit, counters, &mut |items, counters| {
             let instance = &self.instances[items[0] as usize];
             let mesh = instance.mesh();
             let local = instance.local(&rays);
             let corners = local.direction;
             let small = corners.length() * splat(SMALL);
             let pyramid = Pyramid { apex: local.origin.lane(0), corners, small, inverse };
-            mesh.tree.walk((&local, false), limit, stack, counters, &mut |items, _, _| {
+            mesh.tree.walk((&local, false), limit, counters, &mut |items, _| {
                 if items.iter().any(|&i| pyramid.meets(&mesh.triangles[i as usize])) {
                     limit = -1.0;
                 }

@@ -14,6 +14,7 @@ mod tests;
 
 pub use lathe::lathe;
 pub use place::{Assembly, Instance};
+pub use search::Blockers;
 pub(crate) use skin::on_surface;
 pub use skin::{Image, Skin};
 

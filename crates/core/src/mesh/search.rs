@@ -1,30 +1,31 @@
 //! The nearest facet of eight rays, and whether any facet lies on them.
 //!
-//! Packets whose rays run close together walk the tree of instances as one bundle, and so the trees of
+//! Packets whose rays run in about one direction walk the tree of instances as one bundle, and so the trees of
 //! meshes whose triangles are not small beside it: there each triangle is tested against all eight. Else
 //! each ray walks alone, and the triangles of a leaf are tested at once. Both do the same arithmetic per
 //! ray and triangle, so the result is the same, and the same as that of testing everything: the nearest
 //! crossing, of equal ones that of the lower id.
 
 use super::{Assembly, Mesh, gather};
-use crate::bvh::Stack;
+use crate::bvh::Bounds;
 use crate::counters::{Counter, Counters};
 use crate::math::lanes::{Bound, F, INFINITY, LANES, V3, greatest, least, splat};
-use crate::math::number;
+use crate::math::{Vec3, number, whole};
 use crate::scene::Scene;
 use crate::trace::{Aim, Hits, Rays8};
+use std::cell::Cell;
 
 /// Directions that differ by more than this part of their greatest coordinate walk alone.
 const SPREAD: f32 = 0.25;
 
-/// Rays that start further from each other than this part of their greatest coordinate, too.
-const APART: f32 = 0.1;
-
 /// Rays too that are so far apart in a mesh that their square is more than so many of its triangles.
-const COARSE: f32 = 5.0;
+const COARSE: f32 = 12.0;
 
 /// Greatest coordinate that rays may have.
 const FAR: f32 = 1e18;
+
+/// Hit ids of the facets that hid a lamp from points nearby, the latest first; below 0 for none.
+pub type Blockers = Cell<[f32; 4]>;
 
 /// The lowest lane of a mask.
 fn lane_of(lanes: u32) -> usize {
@@ -64,41 +65,56 @@ impl Mesh {
 }
 
 impl Assembly {
-    /// Moves the hits of `rays` to nearer facets, in lanes `wanted`; or, if any facet will do,
-    /// their distance to -1 where one comes before them.
+    /// Moves the hits of `rays` to nearer facets, in lanes `wanted`; or, if `blockers` are given, their
+    /// distance to -1 where any facet comes before them: those are tested first, and get what was found.
     ///
     /// Facets' ids follow those of the scene's other shapes. Facets of glass hide nothing.
     #[inline(never)]
+    #[cfg_attr(luc_size, optimize(size))]
     pub fn search(
         &self,
         scene: &Scene,
         rays: &Rays8,
         wanted: F,
-        any: bool,
+        blockers: Option<&Blockers>,
         best: &mut Hits,
         counters: &mut Counters,
     ) {
         let asked =
             wanted & rays.origin.max_abs().simd_lt(splat(FAR)) & rays.direction.max_abs().simd_lt(splat(FAR));
-        let mut todo = asked.to_bitmask();
-        if todo == 0 || self.is_empty() {
+        if self.is_empty() || !asked.any() {
             return;
         }
-        // Lanes that aren't asked about run with the first that is, and find nothing.
-        let first = rays.alone(todo);
-        let bundle = Rays8 {
-            origin: V3::select(asked, rays.origin, first.origin),
-            direction: V3::select(asked, rays.direction, first.direction),
-        };
         let mut found = Hits { t: asked.select(best.t, splat(-1.0)), id: best.id };
-        let close = spread(bundle.direction).simd_lt(greatest(bundle.direction.max_abs()) * splat(SPREAD))
-            & spread(bundle.origin).simd_lt(greatest(bundle.origin.max_abs()) * splat(APART));
-        let stack = &mut Stack::new();
-        while todo != 0 {
-            let lowest = todo & todo.wrapping_neg();
-            let (rays, lanes) = if close.all() { (bundle, todo) } else { (rays.alone(todo), lowest) };
-            self.walk(scene, (&rays, lanes), any, &mut found, stack, counters);
-            todo &= !lanes;
+        let known = blockers.map_or([-1.0; 4], Cell::get);
+        for id in known.into_iter().take_while(|&id| id >= 0.0) {
+            let (instance, facet) = self.facet((whole(id) >> 2) - scene.shape_count());
+            let corners = instance.mesh().triangles[facet].map(V3::splat);
+            counters.add(Counter::FacetTests, LANES);
+            keep(&Aim::new(&instance.local(rays)), &corners, splat(id), true, &mut found);
+        }
+        let open = found.t.simd_gt(F::ZERO);
+        let mut todo = open.to_bitmask();
+        if todo != 0 {
+            // Lanes that nothing is asked about run with the first that is, and find nothing.
+            let first = rays.alone(todo);
+            let bundle = Rays8 {
+                origin: V3::select(open, rays.origin, first.origin),
+                direction: V3::select(open, rays.direction, first.direction),
+            };
+            let near = greatest(bundle.direction.max_abs()) * splat(SPREAD);
+            let close = spread(bundle.direction).simd_lt(near).all();
+            while todo != 0 {
+                let lowest = todo & todo.wrapping_neg();
+                let (rays, lanes) = if close { (bundle, todo) } else { (rays.alone(todo), lowest) };
+                self.walk(scene, (&rays, lanes), blockers.is_some(), &mut found, counters);
+                todo &= !lanes;
+            }
+        }
+        let hidden = (open & found.t.simd_lt(F::ZERO)).to_bitmask();
+        if let (Some(blockers), true) = (blockers, hidden != 0) {
+            let [a, b, c, _] = known;
+            blockers.set([found.id.as_array()[lane_of(hidden)], a, b, c]);
         }
         best.t = asked.select(found.t, best.t);
         best.id = asked.select(found.id, best.id);
@@ -111,7 +127,6 @@ impl Assembly {
         (rays, lanes): (&Rays8, u32),
         any: bool,
         best: &mut Hits,
-        stack: &mut Stack,
         counters: &mut Counters,
     ) {
         let base = 4.0 * number(scene.shape_count());
@@ -120,7 +135,7 @@ impl Assembly {
         let limit = |best: &Hits| {
             if single { best.t.as_array()[lane_of(lanes)] } else { greatest(best.t).as_array()[0] }
         };
-        self.tree.walk((rays, single), limit(best), stack, counters, &mut |items, stack, counters| {
+        self.tree.walk((rays, single), limit(best), counters, &mut |items, counters| {
             let instance = &self.instances[items[0] as usize];
             if any && scene.materials[instance.material].is_transparent() {
                 return limit(best);
@@ -128,7 +143,13 @@ impl Assembly {
             let mesh = instance.mesh();
             let local = instance.local(rays);
             let [first, _] = instance.ids(base);
-            let mut rest = lanes;
+            let Bounds { lo, hi } = mesh.tree.bounds;
+            let room = Vec3::splat(mesh.tree.room(&local));
+            let (enter, exit) = local.in_box(lo - room, hi + room, best.t);
+            let mut rest = lanes & enter.simd_le(exit).to_bitmask();
+            if rest == 0 {
+                return limit(best);
+            }
             let together = !single && mesh.is_coarse_for(&local);
             while rest != 0 {
                 let lane = lane_of(rest);
@@ -141,30 +162,24 @@ impl Assembly {
                 let aim = Aim::new(&ray);
                 let reach =
                     |found: &Hits| if together { greatest(found.t) } else { least(found.t) }.as_array()[0];
-                mesh.tree.walk(
-                    (&ray, !together),
-                    reach(&found),
-                    stack,
-                    counters,
-                    &mut |items, _, counters| {
-                        counters.add(Counter::FacetTests, items.len() * if together { LANES } else { 1 });
-                        if together {
-                            for &item in items {
-                                let corners = mesh.triangles[item as usize].map(V3::splat);
-                                keep(&aim, &corners, splat(first + 4.0 * item as f32), any, &mut found);
-                            }
-                        } else {
-                            // All of the leaf at once; lanes that are left repeat its first.
-                            let mut id = splat(number(items[0] as usize));
-                            for (id, &item) in id.as_mut_array().iter_mut().zip(items) {
-                                *id = number(item as usize);
-                            }
-                            let id = splat(first) + id * splat(4.0);
-                            keep(&aim, &gather(&mesh.triangles, items), id, any, &mut found);
+                mesh.tree.walk((&ray, !together), reach(&found), counters, &mut |items, counters| {
+                    counters.add(Counter::FacetTests, items.len() * if together { LANES } else { 1 });
+                    if together {
+                        for &item in items {
+                            let corners = mesh.triangles[item as usize].map(V3::splat);
+                            keep(&aim, &corners, splat(first + 4.0 * item as f32), any, &mut found);
                         }
-                        reach(&found)
-                    },
-                );
+                    } else {
+                        // All of the leaf at once; lanes that are left repeat its first.
+                        let mut id = splat(number(items[0] as usize));
+                        for (id, &item) in id.as_mut_array().iter_mut().zip(items) {
+                            *id = number(item as usize);
+                        }
+                        let id = splat(first) + id * splat(4.0);
+                        keep(&aim, &gather(&mesh.triangles, items), id, any, &mut found);
+                    }
+                    reach(&found)
+                });
                 if together {
                     *best = found;
                     break;

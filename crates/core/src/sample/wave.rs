@@ -18,7 +18,7 @@ use crate::render::Stage;
 use crate::scene::{Channel, Shading};
 use crate::shade::{self, MAX_LAMPS, Visibility};
 use crate::study::Phase;
-use crate::trace::{BLOCKED, Hits, NONE, Rays8, nearest, surface};
+use crate::trace::{BLOCKED, Hits, NONE, Rays8, Suspects, nearest, surface};
 
 /// Buffers of one thread, reused from tile to tile.
 #[derive(Default)]
@@ -64,8 +64,9 @@ impl Boxes {
         }
     }
 
-    /// Candidate occluders of each lamp for all the points.
-    fn candidates(&self, stage: &Stage) -> [u64; MAX_LAMPS] {
+    /// What may hide each lamp from all the points.
+    #[cfg_attr(luc_size, optimize(size))]
+    fn suspects(&self, stage: &Stage) -> [Suspects; MAX_LAMPS] {
         let mut masks = [0; MAX_LAMPS];
         for (shape, bounds) in &self.0 {
             let Some((lo, hi)) = bounds.corners() else { continue };
@@ -73,11 +74,14 @@ impl Boxes {
             let reach = lo.abs().max(hi.abs()).length() + stage.scene.camera.position.length();
             let off = if stage.scene.fields.is_empty() { 0.0 } else { 4.0 * stage.quality.epsilon };
             let region = Region::cuboid(lo, hi, 4e-6 * reach + off);
-            for (mask, shafts) in masks.iter_mut().zip(stage.shafts()) {
-                *mask |= occluders(stage.scene, shafts, !*mask, Some(*shape as usize), &region);
+            for (lamp, (mask, shafts)) in masks.iter_mut().zip(stage.shafts()).enumerate() {
+                let own = Some(*shape as usize);
+                // What may hide the middle of a lamp tells little of soft shadows.
+                let soft = stage.shadow_rays(lamp) > 1 || stage.penumbra(lamp) > 0.0;
+                *mask |= if soft { u64::MAX } else { occluders(stage.scene, shafts, !*mask, own, &region) };
             }
         }
-        masks
+        masks.map(Suspects::new)
     }
 }
 
@@ -152,21 +156,21 @@ fn step(stage: &Stage, scratch: &mut Scratch, candidates: u64, level: u32) {
     }
 
     counters.watch.enter(Phase::Sampling);
-    let mut shadows = [u64::MAX; MAX_LAMPS];
+    let mut suspects = [u64::MAX; MAX_LAMPS].map(Suspects::new);
     if stage.quality.cull && hits.len() >= CULL_FROM {
         boxes.0.clear();
         for (packet, hit) in rays.packets.iter().zip(hits.iter()) {
             let points = packet.rays.origin + packet.rays.direction * hit.t;
             boxes.add(points, hit.id, stage.scene.shape_count() as f32);
         }
-        shadows = boxes.candidates(stage);
+        suspects = boxes.suspects(stage);
     }
 
     counters.watch.enter(Phase::Shading);
     let mut found = Found::default();
     for (k, hit) in hits.iter().enumerate() {
         let packet = &rays.packets[k];
-        shade_packet(stage, packet, hit, level, &shadows, &mut found, counters);
+        shade_packet(stage, packet, hit, level, &suspects, &mut found, counters);
         let owners = rays.owners(k);
         let hash = found.hash(stage);
         if level == 0 {
@@ -214,7 +218,7 @@ fn shade_packet(
     packet: &Packet,
     hit: &Hits,
     level: u32,
-    shadows: &[u64; MAX_LAMPS],
+    suspects: &[Suspects; MAX_LAMPS],
     found: &mut Found,
     counters: &mut Counters,
 ) {
@@ -295,7 +299,7 @@ fn shade_packet(
     }
     s.count(counters);
     let view = -rays.direction;
-    let trace = Visibility::Trace(shadows);
+    let trace = Visibility::Trace(suspects);
     let lit = shade::direct(stage, &s, view, solid, trace, &mut block.codes, counters);
     let split = shade::split(scene.shading, &s, rays.direction);
     let bounces = scatter::bounces(stage, *seed, &s, level) & solid;

@@ -14,7 +14,7 @@ use crate::math::{Vec3, whole};
 use crate::render::Stage;
 use crate::scene::{Channel, Scene, Shading};
 use crate::study::Phase;
-use crate::trace::{BLOCKED, Rays8, Surface, ambient_share, occlusion};
+use crate::trace::{BLOCKED, Rays8, Surface, Suspects, ambient_share, occlusion};
 
 /// Lamps that may cast shadows; those after them light without.
 pub const MAX_LAMPS: usize = 8;
@@ -28,8 +28,8 @@ const AGREE: u32 = 4;
 
 /// Where the visibility of the lamps comes from.
 pub enum Visibility<'a> {
-    /// Shadow rays against the candidate occluders of each lamp.
-    Trace(&'a [u64; MAX_LAMPS]),
+    /// Shadow rays against what may hide each lamp; all may hide one that casts soft shadows.
+    Trace(&'a [Suspects; MAX_LAMPS]),
     /// Codes known from neighbouring samples.
     Known,
 }
@@ -161,13 +161,12 @@ pub fn direct(
         // Mirrors show shining rectangles themselves, in place of a highlight.
         let plain = if lamp.is_emitter { diffuse | (shiny & !mirrors) } else { diffuse | shiny };
         let wanted = active & plain & aim.faces & reach.simd_gt(zero);
-        if let (Some(code), Visibility::Trace(candidates)) = (codes.get_mut(k), &visibility) {
+        if let (Some(code), Visibility::Trace(suspects)) = (codes.get_mut(k), &visibility) {
             *code = zero;
             let samples = stage.shadow_rays(k);
             let radius = stage.penumbra(k);
-            // Candidates are the shapes that may hide the lamp's middle.
-            let candidates = if samples > 1 || radius > 0.0 { u64::MAX } else { candidates[k] };
-            if (candidates != 0 || !stage.scene.meshes.is_empty()) && wanted.any() {
+            let suspects = &suspects[k];
+            if (suspects.shapes != 0 || !stage.scene.meshes.is_empty()) && wanted.any() {
                 counters.watch.enter(Phase::Tracing);
                 let (mut hidden, mut open) = (zero, wanted);
                 for sample in 0..samples {
@@ -189,7 +188,7 @@ pub fn direct(
                         &stage.bits,
                         &rays,
                         (open, radius),
-                        candidates,
+                        suspects,
                         counters,
                     );
                     hidden += found.at_most(zero) & open;

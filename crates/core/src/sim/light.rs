@@ -10,7 +10,7 @@ use crate::math::number;
 use crate::render::Stage;
 use crate::scene::{Rules, Smoke, Voxels};
 use crate::shade::{MAX_LAMPS, tinted};
-use crate::trace::{Rays8, occlusion, voxels};
+use crate::trace::{Rays8, Suspects, occlusion, voxels};
 
 /// Side of the bricks by which empty space is skipped, cells.
 const BRICK: usize = 4;
@@ -153,8 +153,15 @@ impl<'a> Volume<'a> {
         let count = wanted.to_bitmask().count_ones() as usize;
         counters.add(Counter::SmokeShadowRays, count);
         counters.add_rays(count);
-        let code =
-            occlusion(stage.scene, &stage.quality, &stage.bits, way, (wanted, 0.0), u64::MAX, counters);
+        let code = occlusion(
+            stage.scene,
+            &stage.quality,
+            &stage.bits,
+            way,
+            (wanted, 0.0),
+            &Suspects::new(u64::MAX),
+            counters,
+        );
         tinted(stage, lamp, code) * (splat(gain) + splat(gain) * code.at_most(F::ZERO))
     }
 

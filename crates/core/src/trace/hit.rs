@@ -43,6 +43,6 @@ pub fn nearest(
         best.t = closer.select(t, best.t);
         best.id = closer.select(splat(index as f32 * 4.0) + part, best.id);
     }
-    scene.meshes.search(scene, rays, TRUE, false, &mut best, counters);
+    scene.meshes.search(scene, rays, TRUE, None, &mut best, counters);
     best
 }

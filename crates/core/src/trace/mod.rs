@@ -25,7 +25,7 @@ mod tests;
 
 pub use field::{ambient_share, distance, field, folded, form, repeated, smooth_min};
 pub use hit::{Hits, NONE, nearest};
-pub use occlusion::{BLOCKED, FAINT, occlusion};
+pub use occlusion::{BLOCKED, FAINT, Suspects, occlusion};
 pub use penumbra::penumbra;
 pub use plane::plane;
 pub use ramp::ramp;

@@ -4,6 +4,7 @@ use super::{Hits, NONE, Rays8, Shape, penumbra};
 use crate::counters::{Counter, Counters};
 use crate::features;
 use crate::math::lanes::{Bound, F, splat};
+use crate::mesh::Blockers;
 use crate::quality::Quality;
 use crate::scene::{Field, Scene};
 
@@ -16,6 +17,21 @@ pub const FAINT: f32 = -1.0 + 1.0 / 16_777_216.0;
 
 /// End of a shadow ray that runs to the lamp: just before it, by four units in the last place.
 const END: f32 = 1.0 - 4.0 / 16_777_216.0;
+
+/// What may hide a lamp from points that are lit one packet after the other.
+pub struct Suspects {
+    /// Bit i stands for the shapes whose index is i modulo 64.
+    pub shapes: u64,
+    /// Facets that did so before.
+    pub facets: Blockers,
+}
+
+impl Suspects {
+    /// These shapes, and facets of which nothing is known.
+    pub fn new(shapes: u64) -> Self {
+        Self { shapes, facets: Blockers::new([NONE; 4]) }
+    }
+}
 
 /// What lies between each origin and `origin + direction`.
 ///
@@ -30,7 +46,7 @@ pub fn occlusion(
     bits: &[f32],
     rays: &Rays8,
     (wanted, radius): (F, f32),
-    candidates: u64,
+    suspects: &Suspects,
     counters: &mut Counters,
 ) -> F {
     let (zero, end) = (F::ZERO, splat(END));
@@ -38,7 +54,7 @@ pub fn occlusion(
     let mut open = wanted;
     let mut seen = F::ONE;
     for (index, &bit) in bits.iter().enumerate() {
-        if candidates >> (index & 63) & 1 == 0 {
+        if suspects.shapes >> (index & 63) & 1 == 0 {
             continue;
         }
         let shape = scene.shape(index);
@@ -66,7 +82,7 @@ pub fn occlusion(
     }
     if open.any() {
         let mut hits = Hits { t: end, id: splat(NONE) };
-        scene.meshes.search(scene, rays, open, true, &mut hits, counters);
+        scene.meshes.search(scene, rays, open, Some(&suspects.facets), &mut hits, counters);
         open &= hits.t.simd_gt(zero);
     }
     if features::FIELD_SHADOWS {

@@ -28,7 +28,7 @@ fn irradiance(scene: &Scene, point: Vec3) -> Vec3 {
     let up = V3::splat(Vec3::Y);
     let matt = Surface { point: V3::splat(point), ..check::surface(Material::default(), up, up, FALSE) };
     let (mut codes, mut counters) = ([F::ZERO; MAX_LAMPS], Counters::default());
-    let all = Visibility::Trace(&[u64::MAX; MAX_LAMPS]);
+    let all = Visibility::Trace(&[u64::MAX; MAX_LAMPS].map(Suspects::new));
     direct(&stage, &matt, up, TRUE, all, &mut codes, &mut counters).irradiance.lane(0)
 }
 

@@ -5,6 +5,7 @@ use crate::math::Vec3;
 use crate::render::Stage;
 use crate::scene::{Emitter, Join, Material, Node, Scene};
 use crate::shade::{MAX_LAMPS, Visibility, direct};
+use crate::trace::Suspects;
 use crate::trace::check::{self, Random};
 use std::f32::consts::PI;
 
@@ -61,7 +62,7 @@ fn shares(scene: &Scene, quality: &Quality) -> Vec<f32> {
             let matt = check::surface(Material::default(), up, up, F::ZERO);
             let matt = crate::trace::Surface { point, clearance: splat(1e-3), ..matt };
             let (mut codes, mut counters) = ([F::ZERO; MAX_LAMPS], Counters::default());
-            let all = Visibility::Trace(&[u64::MAX; MAX_LAMPS]);
+            let all = Visibility::Trace(&[u64::MAX; MAX_LAMPS].map(Suspects::new));
             direct(&stage, &matt, up, TRUE, all, &mut codes, &mut counters).irradiance.x.to_array()
         };
         (0..30).flat_map(eight).collect()

@@ -12,7 +12,7 @@ use crate::scene::{
 };
 use crate::shade::{Visibility, direct, split as split_light};
 use crate::trace::check::{Random, packet, poisoned, splat};
-use crate::trace::{BLOCKED, NONE, Rays8, nearest, occlusion, surface};
+use crate::trace::{BLOCKED, NONE, Rays8, Suspects, nearest, occlusion, surface};
 
 const PATTERNS: [Pattern; 4] = [Pattern::Noise, Pattern::Cells, Pattern::Brick, Pattern::Scratches];
 
@@ -78,7 +78,9 @@ fn found(stage: &Stage, rays: &Rays8) -> Vec<[u32; 8]> {
     let counters = &mut Counters::default();
     let hits = nearest(scene, &Quality::PRESETS[3].1, rays, u64::MAX, counters);
     let solid = hits.id.simd_ge(F::ZERO);
-    let shadow = occlusion(scene, &Quality::PRESETS[3].1, &stage.bits, rays, (TRUE, 0.0), u64::MAX, counters);
+    let quality = &Quality::PRESETS[3].1;
+    let suspects = &Suspects::new(u64::MAX);
+    let shadow = occlusion(scene, quality, &stage.bits, rays, (TRUE, 0.0), suspects, counters);
     let s = surface(
         scene,
         &Quality::PRESETS[3].1,
@@ -89,7 +91,7 @@ fn found(stage: &Stage, rays: &Rays8) -> Vec<[u32; 8]> {
     );
     let view = -rays.direction;
     let mut codes = [F::ZERO; 8];
-    let trace = Visibility::Trace(&[u64::MAX; 8]);
+    let trace = Visibility::Trace(&[u64::MAX; 8].map(Suspects::new));
     let lit = direct(stage, &s, view, solid, trace, &mut codes, counters);
     let light = split_light(scene.shading, &s, rays.direction);
     let mut values = vec![hits.t, hits.id, shadow];
@@ -168,7 +170,8 @@ fn poisoned_rays_neither_panic_nor_hit_at_nan() {
 /// Visibility codes of a lamp at the rays' ends, with hard shadows.
 fn shadow(stage: &Stage, rays: &Rays8) -> F {
     let mut counters = Counters::default();
-    occlusion(stage.scene, &stage.quality, &stage.bits, rays, (TRUE, 0.0), u64::MAX, &mut counters)
+    let suspects = Suspects::new(u64::MAX);
+    occlusion(stage.scene, &stage.quality, &stage.bits, rays, (TRUE, 0.0), &suspects, &mut counters)
 }
 
 /// A row of balls along z at 2, 4, 6, …, of glass where asked, and the lamp at `lamp`.
@@ -221,7 +224,7 @@ fn what_the_lamp_sits_on_does_not_hide_it() {
             &[0.0],
             &rays,
             (TRUE, 0.0),
-            u64::MAX,
+            &Suspects::new(u64::MAX),
             &mut Counters::default(),
         );
         assert_eq!(code, F::ZERO, "{scene:?} {:?} {:?}", rays.origin, rays.direction);
