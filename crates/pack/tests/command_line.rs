@@ -122,7 +122,14 @@ fn help_is_no_error() {
 
 #[test]
 fn cargo_pack_refuses_what_it_does_not_know() {
-    for (arguments, part) in [(["--fast"], "--fast"), (["extra"], "extra"), (["--method=zip"], "zip")] {
+    let cases: [(&[&str], &str); 5] = [
+        (&["--fast"], "--fast"),
+        (&["extra"], "extra"),
+        (&["--method=zip"], "zip"),
+        (&["--floor", "--check"], "--floor goes"),
+        (&["--history", "--floor"], "--floor goes"),
+    ];
+    for (arguments, part) in cases {
         one_sentence(&run(Command::new(env!("CARGO_BIN_EXE_cargo-pack")).args(arguments)).unwrap(), part);
     }
 }

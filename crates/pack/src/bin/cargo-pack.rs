@@ -1,14 +1,15 @@
 //! `cargo pack`: builds the intro for size and packs it into one file under 65,536 bytes.
 
 use lexopt::prelude::*;
-use luc_pack::report::{self, LIMIT, Report, history};
-use luc_pack::{
-    Error, Method, Options, check, machinery, pack_elf_as, percent, release, size_build, write_executable,
-};
+use luc_pack::report::{self, FLOOR_LIMIT, Report, history};
+use luc_pack::size_build::{self, Program};
+use luc_pack::{Error, Method, Options, check, machinery, pack_elf_as, percent, release, write_executable};
+use std::path::Path;
 use std::process::ExitCode;
 
 const HELP: &str = "\
 cargo pack [--check] [--report] [--history] [--release] [--method cm|lzma|raw]
+cargo pack --floor
 
 Builds the intro for size and packs it. Writes target/pack/luc, the packed file, and
 target/pack/luc-safe, the same program unpacked, and prints what became of each byte.
@@ -22,9 +23,11 @@ target/pack/luc-safe, the same program unpacked, and prints what became of each 
                      files, luc.nfo, file_id.diz and a picture; and the tune beside it
       --method NAME  cm: context mixing, smallest (default); lzma: starts faster;
                      raw: no compression
+      --floor        build and pack an empty window instead, with threads but without the
+                     engine: target/pack/floor, what any such program costs
   -h, --help         this text
 
-Exit code 1: over 65,536 bytes, or it has machinery of the engine that none of its parts calls for, or
+Exit code 1: over 65,536 bytes (the floor: 20,480), or it has machinery of the engine that none of its parts calls for, or
 lacks some that one does, or it calls the platform's libm, which differs between machines,
 or the packed file does something else than the unpacked one.
 Exit code 2: it can't be built.
@@ -35,6 +38,7 @@ struct Arguments {
     report: bool,
     history: bool,
     release: bool,
+    floor: bool,
     method: Method,
 }
 
@@ -67,11 +71,20 @@ fn fail(sentence: &str, code: u8) -> ExitCode {
 }
 
 fn arguments() -> Result<Option<Arguments>, lexopt::Error> {
-    let mut arguments =
-        Arguments { check: false, report: false, history: false, release: false, method: Method::Cm };
+    let mut arguments = Arguments {
+        check: false,
+        report: false,
+        history: false,
+        release: false,
+        floor: false,
+        method: Method::Cm,
+    };
+    let mut only_floor = true;
     let mut parser = lexopt::Parser::from_env();
     while let Some(argument) = parser.next()? {
+        only_floor &= matches!(argument, Long("floor"));
         match argument {
+            Long("floor") => arguments.floor = true,
             Long("check") => arguments.check = true,
             Long("report") => arguments.report = true,
             Long("history") => arguments.history = true,
@@ -85,7 +98,23 @@ fn arguments() -> Result<Option<Arguments>, lexopt::Error> {
             other => return Err(other.unexpected()),
         }
     }
+    if arguments.floor && !only_floor {
+        return Err("--floor goes with nothing else".into());
+    }
     Ok(Some(arguments))
+}
+
+/// Builds and packs the empty window; what is wrong with it, if anything.
+fn floor(root: &Path, output: &Path) -> Result<Option<String>, Error> {
+    let built = size_build::build(Program::Floor, root, output)?;
+    let linked = std::fs::read(&built.linked).map_err(Error::file(&built.linked))?;
+    let name = Program::Floor.name();
+    let options = Options { method: Method::Cm, name, needs_avx2: true, progress: percent };
+    let packed = pack_elf_as(&linked, &options)?;
+    write_executable(&output.join(name), &packed.file)?;
+    let report = Report::new(linked.len(), &packed).under(FLOOR_LIMIT);
+    print!("{report}");
+    Ok(report.complaint())
 }
 
 /// Builds, packs, reports; what is wrong with the result, if anything.
@@ -93,7 +122,10 @@ fn pack(arguments: &Arguments) -> Result<Option<String>, Error> {
     let here = std::env::current_dir().map_err(Error::file("."))?;
     let root = size_build::project_root(&here)?;
     let output = root.join("target/pack");
-    let built = size_build::build(&root, &output)?;
+    if arguments.floor {
+        return floor(&root, &output);
+    }
+    let built = size_build::build(Program::Intro, &root, &output)?;
     let of_luc = machinery::compiled(&built.messages, "luc");
     let (compiled, called) =
         (machinery::compiled(&built.messages, "luc-core"), machinery::called(machinery::parts(&of_luc)));
@@ -119,8 +151,8 @@ fn pack(arguments: &Arguments) -> Result<Option<String>, Error> {
     if let Some(complaint) = machinery::difference(&compiled, &called) {
         return Ok(Some(complaint));
     }
-    if report.total > LIMIT {
-        return Ok(Some(format!("{} bytes over the limit of {LIMIT}", report.total - LIMIT)));
+    if let Some(complaint) = report.complaint() {
+        return Ok(Some(complaint));
     }
     let complaint = if arguments.check { check::compare(&file, &safe)? } else { None };
     if arguments.release && complaint.is_none() {

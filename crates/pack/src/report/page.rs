@@ -132,7 +132,7 @@ mod tests {
     #[test]
     fn names_and_costs_stand_in_the_page() {
         let (symbols, costs) = costs(&[0.0, 10.7, 1.0]);
-        let report = Report { linked: 9, stripped: 3, payload: 2, launcher: 1, total: 3 };
+        let report = Report { linked: 9, stripped: 3, payload: 2, launcher: 1, total: 3, limit: 3 };
         let page = page(&report, &costs, &symbols, &[0.0, 10.7, 1.0], "");
         assert!(page.contains("const bits = \"# (\";"), "{page}");
         assert!(page.contains("[0,\"a::b&lt;c&gt;\"],[2,\"a::\\\"d\\\"\"],"));

@@ -93,6 +93,33 @@ pub fn project_root(here: &Path) -> Result<PathBuf, Error> {
     root.map(Path::to_owned).ok_or(Error::Command("not inside the project".to_owned()))
 }
 
+/// What to build.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Program {
+    /// The intro.
+    Intro,
+    /// An empty window: examples/floor.rs.
+    Floor,
+}
+
+impl Program {
+    /// What it is called in messages, and its file in `target/pack`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Program::Intro => "luc",
+            Program::Floor => "floor",
+        }
+    }
+
+    /// What cargo is asked for, and where below its profile's folder the program will lie.
+    fn target(self) -> (&'static str, &'static str) {
+        match self {
+            Program::Intro => ("--bin=luc", "luc"),
+            Program::Floor => ("--example=floor", "examples/floor"),
+        }
+    }
+}
+
 /// What was built.
 pub struct Built {
     /// The linked executable.
@@ -101,15 +128,16 @@ pub struct Built {
     pub messages: String,
 }
 
-/// Builds the intro.
-pub fn build(root: &Path, output: &Path) -> Result<Built, Error> {
+/// Builds a program.
+pub fn build(program: Program, root: &Path, output: &Path) -> Result<Built, Error> {
     let toolchain = Toolchain::find(root)?;
     let workspace = workspace::prepare(root, output, &toolchain)?;
     let target_directory = output.join("build");
+    let (target, place) = program.target();
     let mut command = toolchain.cargo();
     command
         .current_dir(&workspace)
-        .args(["rustc", "--quiet", "--locked", "--package=luc", "--bin=luc", "--profile=intro"])
+        .args(["rustc", "--quiet", "--locked", "--package=luc", target, "--profile=intro"])
         .arg("--message-format=json-render-diagnostics")
         .stderr(Stdio::inherit())
         .args(["--no-default-features", "--features=sound,smoke,swarm,cost", "--target", workspace::TARGET])
@@ -130,6 +158,6 @@ pub fn build(root: &Path, output: &Path) -> Result<Built, Error> {
     if !told.status.success() {
         return Err(Error::Command("the size build failed; cargo's messages are above".to_owned()));
     }
-    let linked = target_directory.join(workspace::TARGET).join("intro/luc");
+    let linked = target_directory.join(workspace::TARGET).join("intro").join(place);
     Ok(Built { linked, messages: String::from_utf8_lossy(&told.stdout).into_owned() })
 }
