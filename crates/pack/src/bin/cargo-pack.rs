@@ -2,7 +2,7 @@
 
 use lexopt::prelude::*;
 use luc_pack::report::{self, FLOOR_LIMIT, Report, history};
-use luc_pack::size_build::{self, Program};
+use luc_pack::size_build::{self, Program, names, order};
 use luc_pack::{Error, Method, Options, check, machinery, pack_elf_as, percent, release, write_executable};
 use std::path::Path;
 use std::process::ExitCode;
@@ -43,9 +43,8 @@ struct Arguments {
 }
 
 fn main() -> ExitCode {
-    if std::env::var_os(size_build::order::VARIABLE).is_some() {
-        let arguments: Vec<_> = std::env::args_os().skip(1).collect();
-        return match size_build::order::link(&arguments) {
+    if let Some(result) = tool() {
+        return match result {
             Ok(code) => ExitCode::from(code as u8),
             Err(error) => fail(&error.to_string(), 2),
         };
@@ -63,6 +62,16 @@ fn main() -> ExitCode {
         Ok(Some(complaint)) => fail(&complaint, 1),
         Err(error) => fail(&error.to_string(), 2),
     }
+}
+
+/// If cargo has called this program as its compiler, or the compiler as its linker: that one's exit code.
+fn tool() -> Option<Result<i32, Error>> {
+    let arguments: Vec<_> = std::env::args_os().skip(1).collect();
+    let compiler = std::env::var_os(names::VARIABLE);
+    if compiler.is_some() && compiler.as_ref() == arguments.first() {
+        return Some(names::compile(&arguments));
+    }
+    std::env::var_os(order::VARIABLE).map(|_| order::link(&arguments))
 }
 
 fn fail(sentence: &str, code: u8) -> ExitCode {

@@ -4,9 +4,11 @@
 //! when something fails: 175 kB packed, before the first line of its own. So this build compiles
 //! the standard library too, for size and without messages, which needs its source
 //! ([`toolchain`]) and, on a stable compiler, the permission `RUSTC_BOOTSTRAP`. Dependencies are
-//! trimmed copies ([`trim`]) in a workspace of their own ([`workspace`]). What is linked is put in order ([`order`]).
+//! trimmed copies ([`trim`]) in a workspace of their own ([`workspace`]). What is linked is put in order ([`order`]). The
+//! result is the same in any folder ([`names`]).
 
 mod edit;
+pub mod names;
 pub mod order;
 pub mod std_source;
 pub mod toolchain;
@@ -135,6 +137,7 @@ pub fn build(program: Program, root: &Path, output: &Path) -> Result<Built, Erro
     let target_directory = output.join("build");
     let (target, place) = program.target();
     let mut command = toolchain.cargo();
+    let this = std::env::current_exe().map_err(Error::file("this program"))?;
     command
         .current_dir(&workspace)
         .args(["rustc", "--quiet", "--locked", "--package=luc", target, "--profile=intro"])
@@ -145,7 +148,9 @@ pub fn build(program: Program, root: &Path, output: &Path) -> Result<Built, Erro
         .arg("--target-dir")
         .arg(&target_directory)
         .env("RUSTC_BOOTSTRAP", "1")
-        .env(LINKER, std::env::current_exe().map_err(Error::file("this program"))?)
+        .env("RUSTC_WRAPPER", &this)
+        .env(names::VARIABLE, &toolchain.rustc)
+        .env(LINKER, &this)
         .env(order::VARIABLE, "1")
         .env("CARGO_ENCODED_RUSTFLAGS", RUSTFLAGS.join("\x1f"))
         .env("CFLAGS_x86_64_unknown_linux_gnu", CFLAGS);
