@@ -16,6 +16,7 @@ pub mod trim;
 pub mod workspace;
 
 use crate::Error;
+use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 use toolchain::Toolchain;
@@ -140,7 +141,9 @@ pub fn build(program: Program, root: &Path, output: &Path) -> Result<Built, Erro
     let this = std::env::current_exe().map_err(Error::file("this program"))?;
     command
         .current_dir(&workspace)
-        .args(["rustc", "--quiet", "--locked", "--package=luc", target, "--profile=intro"])
+        .args(["rustc", "--locked", "--package=luc", target, "--profile=intro"])
+        // It takes a minute: who looks on may see how far it is.
+        .args((!std::io::stderr().is_terminal()).then_some("--quiet"))
         .arg("--message-format=json-render-diagnostics")
         .stderr(Stdio::inherit())
         .args(["--no-default-features", "--features=sound,smoke,swarm,cost", "--target", workspace::TARGET])
