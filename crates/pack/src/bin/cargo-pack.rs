@@ -15,8 +15,9 @@ Builds the intro for size and packs it. Writes target/pack/luc, the packed file,
 target/pack/luc-safe, the same program unpacked, and prints what became of each byte.
 
       --check        run both files too, and compare what they do
-      --report       print what each crate, module and function costs packed, and write
-                     target/pack/report.html, which also shows what changed since the last
+      --report       print what each crate, module, part of the show and function costs
+                     packed, and write target/pack/report.html, which also shows what changed
+                     since the last
       --history      add this commit's sizes to docs/size-history.csv, and draw them
                      in docs/size-history.svg
       --release      write the folder that one sends to a party, target/pack/luc-VERSION: both

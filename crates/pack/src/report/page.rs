@@ -48,9 +48,15 @@ pub fn page(report: &Report, costs: &Costs, symbols: &[Symbol], bits: &[f32], la
         let _ = writeln!(page, "<h2>Since the last report</h2><table>{}</table>", rows.collect::<String>());
     }
     page.push_str("<h2>Every byte</h2><p id=at>&nbsp;</p><canvas id=map></canvas>\n");
-    for (title, rows) in
-        [("By crate", &costs.crates), ("By module", &costs.modules), ("By function", &costs.symbols)]
-    {
+    for (title, rows) in [
+        ("By crate", &costs.crates),
+        ("By module", &costs.modules),
+        ("By part of the show", &costs.parts),
+        ("By function", &costs.symbols),
+    ] {
+        if rows.is_empty() {
+            continue;
+        }
         let _ = writeln!(page, "<h2>{title}</h2><table><tr><th>raw<th>packed<th>{}</table>", table(rows));
     }
     // A sixteenth of a bit is a step; characters from '#' on need no escapes but the backslash.
