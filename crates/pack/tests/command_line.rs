@@ -106,9 +106,11 @@ fn a_comparison_is_a_table() {
     assert!(result.status.success() && result.errors.is_empty(), "{result:?}");
     let table = String::from_utf8(result.output).unwrap();
     let columns = |line: &str| line.matches('|').count();
-    assert_eq!(table.lines().map(columns).collect::<Vec<_>>(), [9; 4], "{table}");
+    assert_eq!(table.lines().map(columns).collect::<Vec<_>>(), [11; 4], "{table}");
     one_sentence(&luc_pack(&directory, &["--compare"]), "which file");
     one_sentence(&luc_pack(&directory, &["--compare", "missing"]), "missing");
+    std::fs::write(directory.join("text"), "no program").unwrap();
+    one_sentence(&luc_pack(&directory, &["--compare", "program", "text"]), "text: not an ELF file");
 }
 
 #[test]
