@@ -18,5 +18,7 @@ fn main() {
         "-Wl,--sort-section=alignment",
     ] {
         println!("cargo::rustc-link-arg-bin=luc={argument}");
+        // examples/floor.rs, by `cargo pack --floor`.
+        println!("cargo::rustc-link-arg-examples={argument}");
     }
 }

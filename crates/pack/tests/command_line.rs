@@ -106,9 +106,11 @@ fn a_comparison_is_a_table() {
     assert!(result.status.success() && result.errors.is_empty(), "{result:?}");
     let table = String::from_utf8(result.output).unwrap();
     let columns = |line: &str| line.matches('|').count();
-    assert_eq!(table.lines().map(columns).collect::<Vec<_>>(), [9; 4], "{table}");
+    assert_eq!(table.lines().map(columns).collect::<Vec<_>>(), [11; 4], "{table}");
     one_sentence(&luc_pack(&directory, &["--compare"]), "which file");
     one_sentence(&luc_pack(&directory, &["--compare", "missing"]), "missing");
+    std::fs::write(directory.join("text"), "no program").unwrap();
+    one_sentence(&luc_pack(&directory, &["--compare", "program", "text"]), "text: not an ELF file");
 }
 
 #[test]
@@ -122,7 +124,14 @@ fn help_is_no_error() {
 
 #[test]
 fn cargo_pack_refuses_what_it_does_not_know() {
-    for (arguments, part) in [(["--fast"], "--fast"), (["extra"], "extra"), (["--method=zip"], "zip")] {
+    let cases: [(&[&str], &str); 5] = [
+        (&["--fast"], "--fast"),
+        (&["extra"], "extra"),
+        (&["--method=zip"], "zip"),
+        (&["--floor", "--check"], "--floor goes"),
+        (&["--history", "--floor"], "--floor goes"),
+    ];
+    for (arguments, part) in cases {
         one_sentence(&run(Command::new(env!("CARGO_BIN_EXE_cargo-pack")).args(arguments)).unwrap(), part);
     }
 }

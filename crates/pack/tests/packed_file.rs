@@ -67,31 +67,46 @@ fn without_memory_files_a_private_file_serves() {
     let runtime = packed.with_file_name("runtime");
     std::fs::create_dir(&runtime).unwrap();
     for directory in [runtime.as_path(), Path::new("/no/such/directory"), Path::new("")] {
-        let mut command = Command::new(&packed);
-        command.arg("one").env("XDG_RUNTIME_DIR", directory);
-        // SAFETY: the closure only makes system calls.
-        unsafe { command.pre_exec(forbid_memory_files) };
-        let result = run(&mut command).unwrap();
-        assert_eq!(result, run(Command::new(&plain).arg("one")).unwrap());
-        assert_eq!(std::fs::read_dir(&runtime).unwrap().count(), 0, "the file is left behind");
+        for forbidden in [MAKING, STARTING] {
+            let mut command = Command::new(&packed);
+            command.arg("one").env("XDG_RUNTIME_DIR", directory);
+            // SAFETY: the closure only makes system calls.
+            unsafe { command.pre_exec(move || forbid(forbidden)) };
+            let result = run(&mut command).unwrap();
+            assert_eq!(result, run(Command::new(&plain).arg("one")).unwrap(), "{directory:?}, {forbidden:?}");
+            assert_eq!(std::fs::read_dir(&runtime).unwrap().count(), 0, "the file is left behind");
+        }
     }
 }
 
-/// Makes `memfd_create` fail in this process and all that it becomes, as `vm.memfd_noexec=2` does.
-fn forbid_memory_files() -> std::io::Result<()> {
-    const LOAD_NUMBER: u16 = 0x20;
+/// A system call with this first argument, or with any.
+type Forbidden = (libc::c_long, Option<u32>);
+
+/// Files in memory can't be made.
+const MAKING: Forbidden = (libc::SYS_memfd_create, None);
+/// They can't be started, as with `vm.memfd_noexec`; the launcher's has the first free number.
+const STARTING: Forbidden = (libc::SYS_execveat, Some(3));
+
+/// Makes a system call fail in this process and all that it becomes.
+fn forbid((number, argument): Forbidden) -> std::io::Result<()> {
+    const LOAD: u16 = 0x20;
+    // Where the system tells the call's number and its first argument.
+    const NUMBER: u32 = 0;
+    const ARGUMENT: u32 = 16;
     const JUMP_IF_EQUAL: u16 = 0x15;
     const RETURN: u16 = 0x06;
     const REFUSE: u32 = 0x0005_0000 | libc::EACCES as u32;
     const ALLOW: u32 = 0x7fff_0000;
     let step = |code, jt, jf, k| libc::sock_filter { code, jt, jf, k };
     let mut filter = [
-        step(LOAD_NUMBER, 0, 0, 0),
-        step(JUMP_IF_EQUAL, 0, 1, libc::SYS_memfd_create as u32),
+        step(LOAD, 0, 0, NUMBER),
+        step(JUMP_IF_EQUAL, 0, 3, number as u32),
+        step(LOAD, 0, 0, ARGUMENT),
+        step(JUMP_IF_EQUAL, 0, if argument.is_some() { 1 } else { 0 }, argument.unwrap_or(0)),
         step(RETURN, 0, 0, REFUSE),
         step(RETURN, 0, 0, ALLOW),
     ];
-    let program = libc::sock_fprog { len: 4, filter: filter.as_mut_ptr() };
+    let program = libc::sock_fprog { len: filter.len() as u16, filter: filter.as_mut_ptr() };
     // SAFETY: the filter lives until the system has copied it.
     let set = unsafe {
         libc::prctl(libc::PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0

@@ -19,7 +19,8 @@ Packs the x86-64 Linux program FILE into the executable OUT.
                      unpacks faster
       --report DIR   print what each crate, module and function costs packed, and write
                      DIR/report.html, with a map of all bytes; best for a program with symbols
-      --compare      print what gzip, zstd, xz, LZMA and context mixing make of the files
+      --compare      print what gzip, zstd, brotli, upkr, xz, LZMA and context mixing make of the
+                     files; upkr takes a minute for each
   -h, --help         this text
 ";
 
@@ -45,17 +46,14 @@ fn main() -> ExitCode {
         }
         Err(error) => return fail(&format!("{error} (--help tells more)")),
     };
-    let (result, input) = match &task {
-        Task::Pack(arguments) => (pack(arguments), &arguments.input),
-        Task::Compare(files) => (report::compare::compare(files), &files[0]),
+    let result = match &task {
+        Task::Pack(arguments) => pack(arguments).map_err(|error| (arguments.input.clone(), error)),
+        Task::Compare(files) => report::compare::compare(files, |line| println!("{line}")),
     };
     match result {
-        Ok(report) => {
-            println!("{report}");
-            ExitCode::SUCCESS
-        }
-        Err(error @ Error::File(..)) => fail(&error.to_string()),
-        Err(error) => fail(&format!("{}: {error}", input.display())),
+        Ok(()) => ExitCode::SUCCESS,
+        Err((_, error @ Error::File(..))) => fail(&error.to_string()),
+        Err((input, error)) => fail(&format!("{}: {error}", input.display())),
     }
 }
 
@@ -97,7 +95,7 @@ fn task() -> Result<Option<Task>, lexopt::Error> {
     Ok(Some(Task::Pack(Arguments { input, output, method, needs_avx2, report })))
 }
 
-fn pack(arguments: &Arguments) -> Result<String, Error> {
+fn pack(arguments: &Arguments) -> Result<(), Error> {
     let file = std::fs::read(&arguments.input).map_err(Error::file(&arguments.input))?;
     let name = arguments.output.file_name().unwrap_or_default().to_string_lossy();
     let Arguments { method, needs_avx2, .. } = *arguments;
@@ -109,5 +107,6 @@ fn pack(arguments: &Arguments) -> Result<String, Error> {
         print!("{}", Report::new(file.len(), &packed));
     }
     let (before, after) = (file.len(), packed.file.len());
-    Ok(format!("{before} bytes, {} stripped, {after} packed", packed.stripped.len()))
+    println!("{before} bytes, {} stripped, {after} packed", packed.stripped.len());
+    Ok(())
 }

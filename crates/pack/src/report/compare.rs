@@ -7,42 +7,58 @@ use super::grouped;
 use crate::{Error, Method, elf, pack_elf};
 use std::fmt::Write;
 use std::io::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 /// The other compressors: name, command and arguments.
-const OTHERS: [(&str, &str, &[&str]); 3] = [
+const OTHERS: [(&str, &str, &[&str]); 5] = [
     ("gzip", "gzip", &["-9nc"]),
     ("zstd 22", "zstd", &["--ultra", "-22", "--no-check", "-qc"]),
+    ("brotli 11", "brotli", &["--quality=11", "--lgwin=24", "-c"]),
+    ("upkr 6", "upkr", &["-6"]),
     ("xz with its filter", "xz", &["--format=raw", "--x86", "--lzma2=preset=9e,lc=3,lp=0,pb=0", "-qc"]),
 ];
 
-/// Packs the programs by all means there are; the table in Markdown.
-pub fn compare(files: &[PathBuf]) -> Result<String, Error> {
-    let mut table = String::from("| program | bytes |");
+/// A program to be compared: its name, its file, and what is packed of it.
+type Program = (String, Vec<u8>, Vec<u8>);
+
+fn read(path: &Path) -> Result<Program, Error> {
+    let file = std::fs::read(path).map_err(Error::file(path))?;
+    let stripped = elf::Program::new(&file)?.stripped;
+    Ok((path.file_name().unwrap_or_default().to_string_lossy().into_owned(), file, stripped))
+}
+
+/// Packs the programs by all means there are, and hands on the table in Markdown, a line as soon as it is known.
+/// An error is that of the file beside it.
+pub fn compare(files: &[PathBuf], mut tell: impl FnMut(&str)) -> Result<(), (PathBuf, Error)> {
+    let read = |path: &PathBuf| read(path).map_err(|error| (path.clone(), error));
+    let programs = files.iter().map(read).collect::<Result<Vec<_>, _>>()?;
+    let mut head = String::from("| program | bytes |");
     for (name, ..) in OTHERS {
-        let _ = write!(table, " {name} |");
+        let _ = write!(head, " {name} |");
     }
-    table.push_str(" LZMA | context mixing | less than LZMA |\n|---|");
-    table.push_str(&"---:|".repeat(OTHERS.len() + 4));
-    for path in files {
-        let file = std::fs::read(path).map_err(Error::file(path))?;
-        let stripped = elf::Program::new(&file)?.stripped;
-        let name = path.file_name().unwrap_or_default().to_string_lossy();
-        let _ = write!(table, "\n| {name} | {} |", grouped(stripped.len() as i64));
+    tell(&(head + " LZMA | context mixing | less than LZMA |"));
+    tell(&format!("|---|{}", "---:|".repeat(OTHERS.len() + 4)));
+    for ((name, file, stripped), path) in programs.iter().zip(files) {
+        let mut line = format!("| {name} | {} |", grouped(stripped.len() as i64));
         for (_, command, arguments) in OTHERS {
-            match through(command, arguments, &stripped) {
+            match through(command, arguments, stripped) {
                 Some(length) => {
-                    let _ = write!(table, " {} |", grouped(length as i64));
+                    let _ = write!(line, " {} |", grouped(length as i64));
                 }
-                None => table.push_str(" – |"),
+                None => line.push_str(" – |"),
             }
         }
-        let (lzma, cm) = (pack_elf(&file, Method::Lzma)?.payload, pack_elf(&file, Method::Cm)?.payload);
+        let payload = |method| match pack_elf(file, method) {
+            Ok(packed) => Ok(packed.payload),
+            Err(error) => Err((path.clone(), error)),
+        };
+        let (lzma, cm) = (payload(Method::Lzma)?, payload(Method::Cm)?);
         let less = 100.0 * (1.0 - cm as f64 / lzma as f64);
-        let _ = write!(table, " {} | {} | {less:.1} % |", grouped(lzma as i64), grouped(cm as i64));
+        let _ = write!(line, " {} | {} | {less:.1} % |", grouped(lzma as i64), grouped(cm as i64));
+        tell(&line);
     }
-    Ok(table)
+    Ok(())
 }
 
 /// The length of what a command makes of `bytes`; none if it isn't installed or fails.

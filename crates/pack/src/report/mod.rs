@@ -14,6 +14,9 @@ use std::path::Path;
 /// What the packed file may have, bytes.
 pub const LIMIT: usize = 65_536;
 
+/// What an empty window with threads may have, bytes: see `cargo pack --floor`.
+pub const FLOOR_LIMIT: usize = 20_480;
+
 /// The sizes of one build, bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Report {
@@ -27,6 +30,8 @@ pub struct Report {
     pub launcher: usize,
     /// The file.
     pub total: usize,
+    /// What the file may have.
+    pub limit: usize,
 }
 
 impl Report {
@@ -34,19 +39,30 @@ impl Report {
     pub fn new(linked: usize, packed: &Packed) -> Report {
         let total = packed.file.len();
         let (stripped, payload) = (packed.stripped.len(), packed.payload);
-        Report { linked, stripped, payload, launcher: total - payload, total }
+        Report { linked, stripped, payload, launcher: total - payload, total, limit: LIMIT }
+    }
+
+    /// The same with another limit.
+    pub fn under(self, limit: usize) -> Report {
+        Report { limit, ..self }
+    }
+
+    /// What is wrong with the size, if anything.
+    pub fn complaint(&self) -> Option<String> {
+        let over = self.total.checked_sub(self.limit).filter(|&over| over > 0);
+        over.map(|over| format!("{over} bytes over the limit of {}", self.limit))
     }
 }
 
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let left = LIMIT as i64 - self.total as i64;
+        let left = self.limit as i64 - self.total as i64;
         writeln!(f, "linked         {:>8}", grouped(self.linked as i64))?;
         writeln!(f, "stripped       {:>8}", grouped(self.stripped as i64))?;
         writeln!(f, "packed payload {:>8}", grouped(self.payload as i64))?;
         writeln!(f, "launcher       {:>8}", grouped(self.launcher as i64))?;
         writeln!(f, "total          {:>8}", grouped(self.total as i64))?;
-        writeln!(f, "left of {} {:>8}", grouped(LIMIT as i64), grouped(left))
+        writeln!(f, "left of {} {:>8}", grouped(self.limit as i64), grouped(left))
     }
 }
 
@@ -91,5 +107,14 @@ mod tests {
                         launcher          6,001\ntotal            23,371\nleft of 65,536   42,165\n";
         assert_eq!(text, expected);
         assert_eq!(grouped(-1_234_567), "-1,234,567");
+    }
+
+    #[test]
+    fn over_the_limit_is_told() {
+        let packed = Packed { file: vec![0; 20_480], stripped: Vec::new(), payload: 9, bits: Vec::new() };
+        let report = Report::new(0, &packed);
+        assert_eq!(report.under(20_480).complaint(), None);
+        let complaint = report.under(20_478).complaint();
+        assert_eq!(complaint.as_deref(), Some("2 bytes over the limit of 20478"));
     }
 }

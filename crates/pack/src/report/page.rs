@@ -48,9 +48,15 @@ pub fn page(report: &Report, costs: &Costs, symbols: &[Symbol], bits: &[f32], la
         let _ = writeln!(page, "<h2>Since the last report</h2><table>{}</table>", rows.collect::<String>());
     }
     page.push_str("<h2>Every byte</h2><p id=at>&nbsp;</p><canvas id=map></canvas>\n");
-    for (title, rows) in
-        [("By crate", &costs.crates), ("By module", &costs.modules), ("By function", &costs.symbols)]
-    {
+    for (title, rows) in [
+        ("By crate", &costs.crates),
+        ("By module", &costs.modules),
+        ("By part of the show", &costs.parts),
+        ("By function", &costs.symbols),
+    ] {
+        if rows.is_empty() {
+            continue;
+        }
         let _ = writeln!(page, "<h2>{title}</h2><table><tr><th>raw<th>packed<th>{}</table>", table(rows));
     }
     // A sixteenth of a bit is a step; characters from '#' on need no escapes but the backslash.
@@ -132,7 +138,7 @@ mod tests {
     #[test]
     fn names_and_costs_stand_in_the_page() {
         let (symbols, costs) = costs(&[0.0, 10.7, 1.0]);
-        let report = Report { linked: 9, stripped: 3, payload: 2, launcher: 1, total: 3 };
+        let report = Report { linked: 9, stripped: 3, payload: 2, launcher: 1, total: 3, limit: 3 };
         let page = page(&report, &costs, &symbols, &[0.0, 10.7, 1.0], "");
         assert!(page.contains("const bits = \"# (\";"), "{page}");
         assert!(page.contains("[0,\"a::b&lt;c&gt;\"],[2,\"a::\\\"d\\\"\"],"));

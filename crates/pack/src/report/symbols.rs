@@ -149,6 +149,12 @@ pub fn module_of(name: &str) -> String {
     }
 }
 
+/// The part of the show that a symbol belongs to, if it is in the module of one.
+pub fn part_of(name: &str) -> Option<&'static str> {
+    let module = path(name).strip_prefix("luc::show::")?.split("::").next()?;
+    luc::show::PARTS.iter().map(|part| part.name).find(|&part| part == module)
+}
+
 fn is_module(part: &str) -> bool {
     part.starts_with(|c: char| c.is_lowercase())
 }

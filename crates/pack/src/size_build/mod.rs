@@ -4,9 +4,11 @@
 //! when something fails: 175 kB packed, before the first line of its own. So this build compiles
 //! the standard library too, for size and without messages, which needs its source
 //! ([`toolchain`]) and, on a stable compiler, the permission `RUSTC_BOOTSTRAP`. Dependencies are
-//! trimmed copies ([`trim`]) in a workspace of their own ([`workspace`]). What is linked is put in order ([`order`]).
+//! trimmed copies ([`trim`]) in a workspace of their own ([`workspace`]). What is linked is put in order ([`order`]). The
+//! result is the same in any folder ([`names`]).
 
 mod edit;
+pub mod names;
 pub mod order;
 pub mod std_source;
 pub mod toolchain;
@@ -14,6 +16,7 @@ pub mod trim;
 pub mod workspace;
 
 use crate::Error;
+use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 use toolchain::Toolchain;
@@ -93,6 +96,33 @@ pub fn project_root(here: &Path) -> Result<PathBuf, Error> {
     root.map(Path::to_owned).ok_or(Error::Command("not inside the project".to_owned()))
 }
 
+/// What to build.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Program {
+    /// The intro.
+    Intro,
+    /// An empty window: examples/floor.rs.
+    Floor,
+}
+
+impl Program {
+    /// What it is called in messages, and its file in `target/pack`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Program::Intro => "luc",
+            Program::Floor => "floor",
+        }
+    }
+
+    /// What cargo is asked for, and where below its profile's folder the program will lie.
+    fn target(self) -> (&'static str, &'static str) {
+        match self {
+            Program::Intro => ("--bin=luc", "luc"),
+            Program::Floor => ("--example=floor", "examples/floor"),
+        }
+    }
+}
+
 /// What was built.
 pub struct Built {
     /// The linked executable.
@@ -101,15 +131,19 @@ pub struct Built {
     pub messages: String,
 }
 
-/// Builds the intro.
-pub fn build(root: &Path, output: &Path) -> Result<Built, Error> {
+/// Builds a program.
+pub fn build(program: Program, root: &Path, output: &Path) -> Result<Built, Error> {
     let toolchain = Toolchain::find(root)?;
     let workspace = workspace::prepare(root, output, &toolchain)?;
     let target_directory = output.join("build");
+    let (target, place) = program.target();
     let mut command = toolchain.cargo();
+    let this = std::env::current_exe().map_err(Error::file("this program"))?;
     command
         .current_dir(&workspace)
-        .args(["rustc", "--quiet", "--locked", "--package=luc", "--bin=luc", "--profile=intro"])
+        .args(["rustc", "--locked", "--package=luc", target, "--profile=intro"])
+        // It takes a minute: who looks on may see how far it is.
+        .args((!std::io::stderr().is_terminal()).then_some("--quiet"))
         .arg("--message-format=json-render-diagnostics")
         .stderr(Stdio::inherit())
         .args(["--no-default-features", "--features=sound,smoke,swarm,cost", "--target", workspace::TARGET])
@@ -117,7 +151,9 @@ pub fn build(root: &Path, output: &Path) -> Result<Built, Error> {
         .arg("--target-dir")
         .arg(&target_directory)
         .env("RUSTC_BOOTSTRAP", "1")
-        .env(LINKER, std::env::current_exe().map_err(Error::file("this program"))?)
+        .env("RUSTC_WRAPPER", &this)
+        .env(names::VARIABLE, &toolchain.rustc)
+        .env(LINKER, &this)
         .env(order::VARIABLE, "1")
         .env("CARGO_ENCODED_RUSTFLAGS", RUSTFLAGS.join("\x1f"))
         .env("CFLAGS_x86_64_unknown_linux_gnu", CFLAGS);
@@ -130,6 +166,6 @@ pub fn build(root: &Path, output: &Path) -> Result<Built, Error> {
     if !told.status.success() {
         return Err(Error::Command("the size build failed; cargo's messages are above".to_owned()));
     }
-    let linked = target_directory.join(workspace::TARGET).join("intro/luc");
+    let linked = target_directory.join(workspace::TARGET).join("intro").join(place);
     Ok(Built { linked, messages: String::from_utf8_lossy(&told.stdout).into_owned() })
 }

@@ -16,9 +16,7 @@ use std::path::{Path, PathBuf};
 /// The target that the size build is for.
 pub const TARGET: &str = "x86_64-unknown-linux-gnu";
 
-/// What is replaced lies in the workspace without being part of it. (The order of functions in the file, and with it
-/// some ten bytes, still hangs on the folder that the project lies in: cargo's names for the standard library's
-/// crates have its path in them.)
+/// What is replaced lies in the workspace without being part of it.
 const OWN_WORKSPACE: &str = "[workspace]\nexclude = [\"deps\", \"std\"]";
 
 /// A dependency as cargo has downloaded it.
