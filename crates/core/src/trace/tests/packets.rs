@@ -5,7 +5,7 @@ use crate::counters::Counters;
 use crate::math::Vec3;
 use crate::math::lanes::{F, TRUE, splat as all};
 use crate::quality::Quality;
-use crate::render::Stage;
+use crate::render::{Stage, Tables};
 use crate::scene::{
     Cone, Cylinder, Field, Join, Light, LightKind, Material, Node, Pattern, Plane, Scene, Shading, Sphere,
     Texture, Triangle,
@@ -78,7 +78,7 @@ fn found(stage: &Stage, rays: &Rays8) -> Vec<[u32; 8]> {
     let counters = &mut Counters::default();
     let hits = nearest(scene, &Quality::PRESETS[3].1, rays, u64::MAX, counters);
     let solid = hits.id.simd_ge(F::ZERO);
-    let shadow = occlusion(scene, &Quality::PRESETS[3].1, &stage.bits, rays, (TRUE, 0.0), u64::MAX, counters);
+    let shadow = occlusion(scene, &Quality::PRESETS[3].1, stage.bits, rays, (TRUE, 0.0), u64::MAX, counters);
     let s = surface(
         scene,
         &Quality::PRESETS[3].1,
@@ -117,7 +117,8 @@ fn a_lane_equals_the_same_ray_in_all_lanes() {
     for case in 0..1_500 {
         let mut scene = mixed(&mut random);
         scene.shading = [Shading::Phong, Shading::CookTorrance, Shading::Ggx][case as usize % 3];
-        let stage = Stage::new(&scene, &quality, 64, 36);
+        let tables = &mut Tables::default();
+        let stage = Stage::new(&scene, &quality, [64, 36], tables);
         let rays = packet(|| {
             if random.one_in(16) {
                 return poison[random.bits() as usize % poison.len()];
@@ -148,7 +149,8 @@ fn poisoned_rays_neither_panic_nor_hit_at_nan() {
     let mut random = Random::new(201);
     for _ in 0..50 {
         let scene = mixed(&mut random);
-        let stage = Stage::new(&scene, &Quality::named("high").unwrap(), 64, 36);
+        let tables = &mut Tables::default();
+        let stage = Stage::new(&scene, &Quality::named("high").unwrap(), [64, 36], tables);
         for eight in poisoned().chunks_exact(8) {
             let mut next = eight.iter();
             let rays = packet(|| *next.next().unwrap());
@@ -168,7 +170,7 @@ fn poisoned_rays_neither_panic_nor_hit_at_nan() {
 /// Visibility codes of a lamp at the rays' ends, with hard shadows.
 fn shadow(stage: &Stage, rays: &Rays8) -> F {
     let mut counters = Counters::default();
-    occlusion(stage.scene, &stage.quality, &stage.bits, rays, (TRUE, 0.0), u64::MAX, &mut counters)
+    occlusion(stage.scene, &stage.quality, stage.bits, rays, (TRUE, 0.0), u64::MAX, &mut counters)
 }
 
 /// A row of balls along z at 2, 4, 6, …, of glass where asked, and the lamp at `lamp`.
@@ -183,7 +185,8 @@ fn row(glass: &[bool], lamp: f32) -> f32 {
         materials: vec![Material::default(), clear],
         ..Scene::default()
     };
-    let stage = Stage::new(&scene, &Quality::named("high").unwrap(), 8, 8);
+    let tables = &mut Tables::default();
+    let stage = Stage::new(&scene, &Quality::named("high").unwrap(), [8, 8], tables);
     let rays = packet(|| (Vec3::ZERO, Vec3::Z * lamp));
     shadow(&stage, &rays).to_array()[3]
 }
