@@ -7,10 +7,10 @@ mod support;
 use luc::show;
 use luc_core::counters::{Counter, Counters};
 use luc_core::quality::Quality;
-use luc_core::render::{Renderer, Stage};
+use luc_core::render::{Renderer, Stage, Tables};
 use luc_core::sample::{Kind, Scratch, TILE, Tile, refine};
 use luc_core::scene::Scene;
-use luc_core::sim::{Simulation, Volume};
+use luc_core::sim::{Room, Simulation, Volume};
 use std::cell::RefCell;
 use support::crossing::{self, Backdrop, Thing};
 use support::golden;
@@ -210,12 +210,13 @@ fn the_shadow_of_a_ball_of_three_pixels_is_never_lost() {
 /// How each pixel of a scene was got, and whether all light is finite, straight from the sampler.
 fn records(scene: &Scene, size: (u32, u32), quality: &Quality) -> (Vec<Kind>, bool) {
     let mut simulation = SMOKE.take();
-    let (mut counters, mut shown) = (Counters::default(), Vec::new());
+    let (mut counters, mut shown) = (Counters::default(), Room::default());
     let volume = scene.smoke.as_ref().map(|of| {
         simulation.run(of, &mut counters);
         Volume::new(of, &simulation, &mut shown, &mut counters)
     });
-    let mut stage = Stage::new(scene, quality, size.0, size.1);
+    let tables = &mut Tables::default();
+    let mut stage = Stage::new(scene, quality, size.into(), tables);
     stage.volume = volume.as_ref();
     let (width, height) = (size.0 as usize, size.1 as usize);
     let mut kinds = vec![Kind::Traced; width * height];
@@ -231,7 +232,6 @@ fn records(scene: &Scene, size: (u32, u32), quality: &Quality) -> (Vec<Kind>, bo
             }
         }
     }
-    drop(volume);
     SMOKE.set(simulation);
     (kinds, finite)
 }

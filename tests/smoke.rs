@@ -24,13 +24,12 @@ const SIZE: (u32, u32) = (160, 90);
 const CELL: f32 = 0.1;
 
 /// A lump with a hole, to the right of its middle.
-fn lump(step: u32) -> Voxels {
-    let mut figure = Voxels::new(RULES.lo, CELL, RULES.size);
+fn lump(step: u32, figure: &mut Voxels) {
+    figure.reset(RULES.lo, CELL, RULES.size);
     if step <= 20 {
         figure.edit(Edit::Overwrite(Voxels::SMOKE), [5, 2, 4], [13, 6, 12]);
         figure.edit(Edit::Overwrite(Voxels::EMPTY), [7, 0, 7], [10, 6, 10]);
     }
-    figure
 }
 
 static RULES: Rules = Rules {
@@ -49,10 +48,9 @@ static RULES: Rules = Rules {
 };
 
 /// All of its box is smoke, and stays it.
-fn slab(_: u32) -> Voxels {
-    let mut figure = Voxels::new(SLAB.lo, CELL, SLAB.size);
+fn slab(_: u32, figure: &mut Voxels) {
+    figure.reset(SLAB.lo, CELL, SLAB.size);
     figure.edit_all(Edit::Overwrite(Voxels::SMOKE));
-    figure
 }
 
 static SLAB: Rules = Rules {

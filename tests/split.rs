@@ -5,7 +5,7 @@ use luc::show;
 use luc_core::counters::Counter;
 use luc_core::quality::Quality;
 use luc_core::render::Renderer;
-use luc_core::scene::{Figures, Scene, Split};
+use luc_core::scene::{Beam, Camera, Figures, Grade, Scene, Split};
 use std::cell::Cell;
 use support::picture::psnr;
 
@@ -17,9 +17,9 @@ thread_local! {
 }
 
 /// Titles that write nothing, but keep the figures.
-fn keep(figures: &Figures) -> Scene {
+fn keep(figures: &Figures, _: &mut Vec<Beam>) -> (Camera, Grade) {
     TOLD.set(Some(*figures));
-    Scene::default()
+    (Camera::default(), Grade::DEFAULT)
 }
 
 /// The cathedral with the line at `x`, or without line, and without what blurs.

@@ -6,7 +6,7 @@ use luc_core::counters::Counter;
 use luc_core::math::Vec3;
 use luc_core::plan::Plan;
 use luc_core::quality::Quality;
-use luc_core::render::Stage;
+use luc_core::render::{Stage, Tables};
 use luc_core::sample::{Kind, Scratch, Tile, refine};
 use luc_core::scene::*;
 use support::picture::{draw, psnr};
@@ -107,7 +107,8 @@ fn the_plan_names_what_these_surfaces_call_for() {
 
 /// The linear light in the middle of a picture of `scene`, and of all its traced pixels.
 fn light(scene: &Scene, quality: &Quality) -> (Vec3, Vec<Vec3>) {
-    let stage = Stage::new(scene, quality, 64, 64);
+    let tables = &mut Tables::default();
+    let stage = Stage::new(scene, quality, [64, 64], tables);
     let mut tile = Tile::default();
     refine(&stage, &mut Scratch::default(), (0, 0), &mut tile);
     let all = (0..64 * 64).map(|i| (i % 64, i / 64));
@@ -184,7 +185,8 @@ fn traced_pixels_are_the_same_whatever_else_is_traced() {
     let scene = Scene { bounces: 2, ..shore() };
     let ultra = preset("ultra");
     let tile = |quality: &Quality| {
-        let stage = Stage::new(&scene, quality, SIZE.0, SIZE.1);
+        let tables = &mut Tables::default();
+        let stage = Stage::new(&scene, quality, SIZE.into(), tables);
         let mut tile = Tile::default();
         refine(&stage, &mut Scratch::default(), (128, 64), &mut tile);
         tile

@@ -4,7 +4,7 @@ mod support;
 use luc::show;
 use luc_core::math::Vec3;
 use luc_core::quality::Quality;
-use luc_core::render::{FARTHEST, MOST_STEPS, Renderer, Stage, View};
+use luc_core::render::{FARTHEST, MOST_STEPS, Renderer, Stage, Tables, View};
 use luc_core::scene::*;
 use support::picture::channels;
 
@@ -59,7 +59,8 @@ fn on_rim(stage: &Stage, i: usize) -> bool {
 fn normals_distances_and_albedos_are_those_of_the_surfaces() {
     let scene = ball();
     let quality = quality();
-    let stage = Stage::new(&scene, &quality, SIZE.0, SIZE.1);
+    let tables = &mut Tables::default();
+    let stage = Stage::new(&scene, &quality, SIZE.into(), tables);
     let [normals, distances, albedos] =
         [View::Normal, View::Distance, View::Albedo].map(|view| draw(view, &scene, &quality));
     // The sRGB curve of 0.5, 0.2, 0.05 and 0.25, times 255.

@@ -95,19 +95,13 @@ fn digits(words: &mut [u8], mut n: u64) {
 }
 
 /// The figures under the picture, and the line.
-fn titles(figures: &Figures) -> Scene {
-    let mut scene = Scene::default();
-    // The plane one unit ahead is two units wide.
-    scene.camera.position = Vec3::ZERO;
-    scene.camera.target = Vec3::NEG_Z;
-    scene.camera.fov = angle(90.0);
-    (scene.grade.bloom_threshold, scene.grade.bloom) = (0.9, 0.5);
+fn titles(figures: &Figures, beams: &mut Vec<Beam>) -> (Camera, Grade) {
     let height = figures.height;
     let split = &figures.split;
     let at = |y: f32| Vec3::new(split.x + split.slant * y, height * y, -1.0);
     for (width, colour) in [(0.0036, v(3.3, 2.4, 1.35)), (0.03, v(0.3, 0.16, 0.08))] {
         let colour = colour * split.light;
-        scene.beams.push(Beam { from: at(1.2), to: at(-1.2), width, colour, fade: 0.0 });
+        beams.push(Beam { from: at(1.2), to: at(-1.2), width, colour, fade: 0.0 });
     }
 
     let ([mut left, mut right], mut sampled) = ([[b' '; 15]; 2], [b' '; 20]);
@@ -134,9 +128,11 @@ fn titles(figures: &Figures) -> Scene {
             width: unit * step * 0.24,
             colour,
         };
-        write(&mut scene.beams, &line, Vec3::ZERO, 99.0);
+        write(beams, &line, Vec3::ZERO, 99.0);
     }
-    scene
+    // The plane one unit ahead is two units wide.
+    let camera = Camera { position: Vec3::ZERO, target: Vec3::NEG_Z, fov: angle(90.0), ..Camera::default() };
+    (camera, Grade { bloom_threshold: 0.9, bloom: 0.5, ..Grade::DEFAULT })
 }
 
 /// The scene at a local frame.
@@ -179,8 +175,9 @@ mod tests {
             let split = Split { x: 0.0, slant: SLANT, light: 1.0, titles };
             let height = h / w;
             for error in [0.0, 1e-5, 1.0] {
-                let scene = titles(&Figures { split, height, rays: [88_888_888; 2], error });
-                for beam in &scene.beams[2..] {
+                let mut beams = vec![];
+                titles(&Figures { split, height, rays: [88_888_888; 2], error }, &mut beams);
+                for beam in &beams[2..] {
                     for p in [beam.from, beam.to] {
                         let reach = Beam::END * beam.width;
                         let inside = p.x.abs() + reach < 0.97 && p.y.abs() + reach < 0.99 * height;

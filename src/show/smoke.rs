@@ -51,9 +51,9 @@ fn built([x, y, z]: [i32; 3]) -> u8 {
 }
 
 /// The house at a step of the smoke.
-fn figure(step: u32) -> Voxels {
+fn figure(step: u32, house: &mut Voxels) {
     let front = track(&FRONT, step as f32 * Air::SECONDS);
-    let mut house = Voxels::new(CORNER, CELL, SIZE);
+    house.reset(CORNER, CELL, SIZE);
     house.material = 1;
     house.groove = 0.09;
     house.variation = 0.3;
@@ -73,7 +73,6 @@ fn figure(step: u32) -> Voxels {
             _ => value,
         }
     });
-    house
 }
 
 static SMOKE: Rules = Rules {
@@ -166,7 +165,8 @@ pub fn scene(frame: u64) -> Scene {
     let mut scene = STILL.scene();
     let steps = frame.div_ceil(2) as u32;
     scene.smoke = Some(Smoke { rules: &SMOKE, steps, behind: (frame & 1) as f32 * 0.5 });
-    scene.voxels = vec![figure(steps)];
+    scene.voxels = vec![Voxels::default()];
+    figure(steps, &mut scene.voxels[0]);
     let way = t / 24.0;
     let target = Vec3::new(0.7, 1.5 + 0.25 * way, 0.0);
     let position = orbit(-0.0545 + 0.042 * way, 9.24, 1.55 + 0.6 * way);

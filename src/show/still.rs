@@ -84,7 +84,7 @@ impl Still {
             ambient: self.ambient,
             fog: self.fog,
             grade: self.grade,
-            ..Scene::default()
+            ..Scene::new()
         }
     }
 }

@@ -56,9 +56,11 @@ impl Plan {
         let known = quality.rung == Rung::Surface || (quality.rung == Rung::Light && textured);
         let titles = scene.split.map(|split| {
             let (rays, height, error) = ([0; 2], 0.5625, 0.0);
-            (split.titles)(&Figures { split, rays, height, error })
+            let mut beams = vec![];
+            let (_, grade) = (split.titles)(&Figures { split, rays, height, error }, &mut beams);
+            (!beams.is_empty(), grade.bloom > 0.0)
         });
-        let titles = || titles.iter();
+        let (writes, glows) = titles.unwrap_or_default();
         let calls = [
             (Counter::PrimaryRays, true),
             (Counter::SphereTests, !scene.spheres.is_empty()),
@@ -111,13 +113,13 @@ impl Plan {
             (Counter::SmokeShown, scene.smoke.is_some()),
             (Counter::SmokeMarched, marches),
             (Counter::SmokeShadowRays, shades),
-            (Counter::Beams, !scene.beams.is_empty() || titles().any(|scene| !scene.beams.is_empty())),
+            (Counter::Beams, !scene.beams.is_empty() || writes),
             (Counter::KnownSurfaces, adaptive && known && scene.has_known_surfaces()),
             (Counter::Traced, !adaptive || quality.smallest <= 1 || scene.split.is_some()),
             (Counter::Interpolated, adaptive),
             (Counter::Filled, adaptive),
             (Counter::EdgeSamples, quality.edge_samples.max(quality.samples) > 0),
-            (Counter::BloomPasses, scene.grade.bloom > 0.0 || titles().any(|scene| scene.grade.bloom > 0.0)),
+            (Counter::BloomPasses, scene.grade.bloom > 0.0 || glows),
             (Counter::Measured, adaptive && scene.split.is_some()),
             (Counter::OverlayPixels, scene.overlay > 0.0),
         ];

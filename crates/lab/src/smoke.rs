@@ -6,7 +6,7 @@ use luc_core::math::Vec3;
 use luc_core::quality::Quality;
 use luc_core::render::Renderer;
 use luc_core::scene::{Air, Edit, Rules, Scene, Smoke, Voxels};
-use luc_core::sim::{Simulation, Volume};
+use luc_core::sim::{Room, Simulation, Volume};
 use std::time::Instant;
 
 /// Frames of the part that are measured.
@@ -19,11 +19,10 @@ const SIZE: (u32, u32) = (1280, 720);
 const CELLS: [usize; 3] = [64, 96, 64];
 
 /// A fire under a plate.
-fn fire(_: u32) -> Voxels {
-    let mut figure = Voxels::new(Vec3::ZERO, 0.1, [32, 48, 32]);
+fn fire(_: u32, figure: &mut Voxels) {
+    figure.reset(Vec3::ZERO, 0.1, [32, 48, 32]);
     figure.edit(Edit::Overwrite(Voxels::SMOKE), [12, 1, 12], [20, 4, 20]);
     figure.edit(Edit::Overwrite(1), [10, 16, 10], [20, 18, 20]);
-    figure
 }
 
 /// Milliseconds that a piece of work takes.
@@ -56,7 +55,7 @@ pub fn run(_: &[String]) -> Result<(), String> {
 
     let part = show::PARTS.iter().find(|part| part.name == "smoke").ok_or("the show has no smoke")?;
     for (name, quality) in &Quality::PRESETS[2..4] {
-        let (mut simulation, mut shown) = (Simulation::default(), vec![]);
+        let (mut simulation, mut shown) = (Simulation::default(), Room::default());
         let (mut renderer, mut bare) = (Renderer::default(), Renderer::default());
         let mut pixels = vec![0; (SIZE.0 * SIZE.1) as usize];
         let (mut moving, mut showing, mut all, mut without) = (vec![], vec![], vec![], vec![]);
@@ -64,7 +63,7 @@ pub fn run(_: &[String]) -> Result<(), String> {
             let scene = (part.scene)(n);
             let smoke = scene.smoke.as_ref().ok_or("the part has no smoke")?;
             moving.push(timed(|| simulation.run(smoke, &mut counters)));
-            showing.push(timed(|| drop(Volume::new(smoke, &simulation, &mut shown, &mut counters))));
+            showing.push(timed(|| _ = Volume::new(smoke, &simulation, &mut shown, &mut counters)));
             all.push(timed(|| renderer.frame(&scene, n, SIZE, quality, &mut pixels)));
             let clear = Scene { smoke: None, ..scene.clone() };
             without.push(timed(|| bare.frame(&clear, n, SIZE, quality, &mut pixels)));

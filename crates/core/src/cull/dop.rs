@@ -30,7 +30,7 @@ fn across(axis: Vec3) -> (Vec3, Vec3) {
 }
 
 /// A point to look from and the directions right, up and forward.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct View {
     /// The eye, world.
     pub origin: Vec3,
@@ -330,8 +330,9 @@ impl Dop {
     }
 }
 
-/// Bounds of all shapes of a scene in a view.
+/// Bounds of all shapes of a scene in a view, in place of what `out` held.
 #[cfg_attr(luc_size, optimize(size))]
-pub fn dops(scene: &Scene, view: &View) -> Vec<Dop> {
-    (0..scene.shape_count()).map(|i| Dop::of(view, scene.shape(i))).collect()
+pub fn dops(scene: &Scene, view: &View, out: &mut Vec<Dop>) {
+    out.clear();
+    out.extend((0..scene.shape_count()).map(|i| Dop::of(view, scene.shape(i))));
 }

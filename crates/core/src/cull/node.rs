@@ -21,10 +21,10 @@ pub struct FieldNode {
     ball: Option<(Vec3, f32)>,
 }
 
-/// The bodies of a scene's fields.
+/// The bodies of a scene's fields, in place of what `out` held.
 #[cfg_attr(luc_size, optimize(size))]
-pub fn field_nodes(scene: &Scene, view: &View) -> Vec<FieldNode> {
-    let mut nodes = Vec::new();
+pub fn field_nodes(scene: &Scene, view: &View, out: &mut Vec<FieldNode>) {
+    out.clear();
     let first = scene.shape_count() - scene.fields.len();
     for (i, field) in scene.fields.iter().enumerate() {
         for (k, node) in field.nodes.iter().enumerate() {
@@ -35,10 +35,9 @@ pub fn field_nodes(scene: &Scene, view: &View) -> Vec<FieldNode> {
                 Some((c, r)) => Dop::ball(c, r),
                 None => Dop::cuboid(view, node.centre, node.axes.unwrap_or_default(), half + grown),
             };
-            nodes.push(FieldNode { shape: first + i, index: k as f32, dop, ball });
+            out.push(FieldNode { shape: first + i, index: k as f32, dop, ball });
         }
     }
-    nodes
 }
 
 impl FieldNode {

@@ -36,17 +36,16 @@ fn middle(shape: Shape, lamp: Vec3) -> Vec3 {
     }
 }
 
-/// The shafts of each lamp to each shape, lamp after lamp.
+/// The shafts of each lamp to each shape, lamp after lamp, in place of what `out` held.
 #[cfg_attr(luc_size, optimize(size))]
-pub fn shafts(scene: &Scene, lamps: &[Lamp]) -> Vec<Shaft> {
+pub fn shafts(scene: &Scene, lamps: &[Lamp], out: &mut Vec<Shaft>) {
     let count = scene.shape_count();
-    (0..lamps.len() * count)
-        .map(|i| {
-            let (origin, shape) = (lamps[i / count].position, scene.shape(i % count));
-            let view = View::towards(origin, middle(shape, origin));
-            Shaft { view, dop: Dop::of(&view, shape) }
-        })
-        .collect()
+    out.clear();
+    out.extend((0..lamps.len() * count).map(|i| {
+        let (origin, shape) = (lamps[i / count].position, scene.shape(i % count));
+        let view = View::towards(origin, middle(shape, origin));
+        Shaft { view, dop: Dop::of(&view, shape) }
+    }));
 }
 
 /// Where points lie that may be in shadow: within a distance of the hull of some corners.

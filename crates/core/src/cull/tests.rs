@@ -108,13 +108,14 @@ const WIDEST: f32 = 1.333;
 fn rays_that_hit_a_shape_are_in_its_bound() {
     for (kind, name) in KINDS.into_iter().enumerate() {
         let mut random = Random::new(700 + kind as u32);
-        let (mut seen, mut culled) = (0, 0);
+        let (mut seen, mut culled, mut bounds) = (0, 0, vec![]);
         for _ in 0..40_000 {
             let scene = one(&mut random, kind);
             let eye = random.vector(-2, 5);
             let target = point(&mut random, &scene) + random.direction() * random.range(0.0, 3.0);
             let view = View::towards(eye, target);
-            let dop = dops(&scene, &view)[0];
+            dops(&scene, &view, &mut bounds);
+            let dop = bounds[0];
             let rays = packet(|| {
                 let to = point(&mut random, &scene);
                 (eye, (to - eye).normalize_or(Vec3::X))
@@ -149,11 +150,13 @@ fn shapes_that_cast_a_shadow_are_among_the_candidates() {
     for (kind, name) in KINDS.into_iter().enumerate() {
         let mut random = Random::new(800 + kind as u32);
         let (mut shadowed, mut culled) = (0, 0);
+        let (mut sources, mut shaft) = (vec![], vec![]);
         for case in 0..60_000 {
             let mut scene = one(&mut random, kind);
             let position = random.vector(-2, 5);
             scene.lights.push(Light { position, colour: Vec3::ONE, kind: LightKind::Point });
-            let shafts = shafts(&scene, &lamps(&scene)[..1]);
+            lamps(&scene, &mut sources);
+            shafts(&scene, &sources[..1], &mut shaft);
             // Points behind the shape, in a small region: a patch or a ball.
             let behind = point(&mut random, &scene);
             let hub = position + (behind - position) * (1.0 + random.size(-10, 4));
@@ -173,7 +176,7 @@ fn shapes_that_cast_a_shadow_are_among_the_candidates() {
             let slack = 4e-6 * (hub.length() + size + position.length());
             let region =
                 if case & 1 == 0 { Region::patch(&corners, slack) } else { Region::ball(hub, size + slack) };
-            let kept = occluders(&scene, &shafts, 1, None, &region) & 1 == 1;
+            let kept = occluders(&scene, &shaft, 1, None, &region) & 1 == 1;
             culled += u32::from(!kept);
             for lane in 0..8 {
                 let t = t.to_array()[lane];

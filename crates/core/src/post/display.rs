@@ -19,6 +19,7 @@ const FIRST: u32 = (127 - 12) << 23;
 const ENTRIES: usize = (OCTAVES << FINE) as usize + 1;
 
 /// A table of display values for each channel, one after another.
+#[derive(Default)]
 pub struct Display(Vec<f32>);
 
 fn tone(x: f32) -> f32 {
@@ -27,8 +28,15 @@ fn tone(x: f32) -> f32 {
 
 impl Display {
     /// The curves of a grade.
-    #[cfg_attr(luc_size, optimize(size))]
     pub fn new(grade: &Grade) -> Self {
+        let mut display = Self::default();
+        display.set(grade);
+        display
+    }
+
+    /// Makes these the curves of a grade.
+    #[cfg_attr(luc_size, optimize(size))]
+    pub fn set(&mut self, grade: &Grade) {
         let entry = |at: usize| {
             let (channel, i) = (at / ENTRIES, at % ENTRIES);
             let (lift, gain, gamma) = (grade.lift[channel], grade.gain[channel], grade.gamma[channel]);
@@ -36,7 +44,8 @@ impl Display {
             let v = srgb_encode(tone(x * grade.exposure));
             pow((lift + v * (gain - lift)).clamp(0.0, 1.0), 1.0 / gamma)
         };
-        Self((0..3 * ENTRIES).map(entry).collect())
+        self.0.clear();
+        self.0.extend((0..3 * ENTRIES).map(entry));
     }
 
     /// Display value of a colour, 0 to 1. NaN counts as black.

@@ -15,7 +15,7 @@ use crate::math::lanes::{Bound, F, RAMP, V3, load, splat, splat_u};
 use crate::math::{Vec3, number, whole};
 use crate::render::Stage;
 use crate::sample::{Kind, TILE, Tile};
-use crate::scene::Stop;
+use crate::scene::{Grade, Scene, Stop};
 use crate::shade::Points;
 use crate::study::Phase;
 use crate::trace::ramp;
@@ -47,23 +47,24 @@ impl Post {
         counters
     }
 
-    /// Writes frame `n` as 0RGB rows into `pixels`: the picture that was kept, if one was, and what the tiles
-    /// of another stage show, if there are any. Returns what that took.
+    /// Writes frame `n` of a scene as 0RGB rows into `pixels`: the picture that was kept, if one was, and what
+    /// the tiles of a stage show, if there are any; it need not be of this scene. Returns what that took.
     #[inline(never)]
     pub fn finish(
         &mut self,
+        scene: &Scene,
         stage: &Stage,
         kept: bool,
-        lit: Option<(&Stage, &[Tile])>,
+        lit: Option<&[Tile]>,
         n: u64,
         pixels: &mut [u32],
     ) -> Counters {
         let (width, height) = (stage.width as usize, stage.height as usize);
         let mut counters = Counters::start(&stage.quality.study, Phase::Bloom);
-        let glow = lit.and_then(|(stage, tiles)| self.bloom.glow(stage, tiles));
+        let glow = lit.and_then(|tiles| self.bloom.glow(stage, tiles));
         counters.watch.enter(Phase::Finishing);
         counters.add(Counter::BloomPasses, glow.is_some() as usize);
-        let painted = whole(stage.scene.overlay * stage.width as f32);
+        let painted = whole(scene.overlay * stage.width as f32);
         counters.add(Counter::OverlayPixels, painted * height);
         let picture = &self.chain.picture;
         parallel::each(pixels.chunks_mut(width * ROWS), |strip, rows| {
@@ -73,10 +74,10 @@ impl Post {
                     if KEEPS && kept {
                         colour = picture.near(x, y, 0, 0);
                     }
-                    if let Some((stage, tiles)) = lit {
+                    if let Some(tiles) = lit {
                         colour += develop(stage, tiles, glow, (x, y));
                     }
-                    print(stage, colour, (x, y), n, out);
+                    print(&scene.grade, (width, height), colour, (x, y), n, out);
                 }
             }
         });
@@ -106,17 +107,23 @@ fn develop(stage: &Stage, tiles: &[Tile], glow: Option<&Picture>, (x, y): (usize
         let side = stage.quality.light_tile as usize;
         let reach = tile.reach((x % TILE, y % TILE), side);
         let count = |points: &Points| points.count(&stage.scene.points, [x / side, y / side], reach);
-        let count = stage.points.as_ref().map_or(0, count);
+        let count = stage.points.map_or(0, count);
         let paint = ramp(&COUNTS, splat(count as i32 as f32));
         colour = colour + (paint - colour) * splat(stage.scene.light_count);
     }
     colour
 }
 
-/// Vignette, grain and bytes of eight pixels from (`x`, `y`) on, or as many as `out` takes.
-fn print(stage: &Stage, mut colour: V3, (x, y): (usize, usize), n: u64, out: &mut [u32]) {
-    let grade = &stage.scene.grade;
-    let (w, h) = (stage.width as f32, stage.height as f32);
+/// Vignette, grain and bytes of eight pixels from (`x`, `y`) of a picture on, or as many as `out` takes.
+fn print(
+    grade: &Grade,
+    (width, height): (usize, usize),
+    mut colour: V3,
+    (x, y): (usize, usize),
+    n: u64,
+    out: &mut [u32],
+) {
+    let (w, h) = (number(width), number(height));
     if grade.vignette > 0.0 {
         let fx = (splat(number(x) + 0.5) + RAMP) * splat(2.0 / w) - F::ONE;
         let fy = ((number(y) + 0.5) * 2.0 - h) / h;
@@ -124,7 +131,7 @@ fn print(stage: &Stage, mut colour: V3, (x, y): (usize, usize), n: u64, out: &mu
         let fall = r2 * (splat(0.5939) + r2 * (splat(0.6871) - r2 * splat(0.2849)));
         colour = colour * (F::ONE - splat(grade.vignette) * fall);
     }
-    let noise = noise(y * stage.width as usize + x, hash2(n as u32, 0)) * splat(2.0 * grade.grain);
+    let noise = noise(y * width + x, hash2(n as u32, 0)) * splat(2.0 * grade.grain);
     let byte = |c: F| {
         let c = (c + noise).at_least(F::ZERO).at_most(F::ONE);
         // A whole number added to 2^23 stands in the low bits.
@@ -165,19 +172,22 @@ fn overlay(tile: &Tile, (x, y): (usize, usize), colour: Vec3) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::quality::Quality;
-    use crate::scene::{Grade, Scene};
 
     /// Side of the pictures.
     const SIDE: usize = 64;
 
     /// A picture of one display value, as bytes of its green channel.
     fn printed(grade: Grade, n: u64, value: f32) -> Vec<u32> {
-        let scene = Scene { grade, ..Scene::default() };
-        let stage = Stage::new(&scene, &Quality::PRESETS[Quality::DEFAULT].1, SIDE as u32, SIDE as u32);
         let mut pixels = vec![!0; SIDE * SIDE];
         for (k, eight) in pixels.chunks_mut(8).enumerate() {
-            print(&stage, V3::splat(Vec3::splat(value)), (8 * k % SIDE, 8 * k / SIDE), n, eight);
+            print(
+                &grade,
+                (SIDE, SIDE),
+                V3::splat(Vec3::splat(value)),
+                (8 * k % SIDE, 8 * k / SIDE),
+                n,
+                eight,
+            );
         }
         assert!(pixels.iter().all(|p| p >> 16 == p & 255 && p >> 8 & 255 == p & 255), "grey, and 0 on top");
         pixels.iter().map(|p| p >> 8 & 255).collect()

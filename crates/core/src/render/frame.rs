@@ -1,6 +1,6 @@
 //! Rendering a frame: a pure function of scene, frame number, quality and size.
 
-use super::Stage;
+use super::{Stage, Tables};
 use crate::counters::Counters;
 use crate::features;
 use crate::math::sampling::r2;
@@ -9,12 +9,17 @@ use crate::post::{KEEPS, Post};
 use crate::quality::Quality;
 use crate::sample::{Scratch, TILE, Tile, beams, refine, share_edges, smooth_edges};
 use crate::scene::{Effect, Figures, Scene};
-use crate::sim::{Eight, Simulation, Volume};
+use crate::sim::{Room, Simulation, Volume};
 use crate::study::Phase;
+use std::mem::take;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Work on the tile whose upper left pixel is given.
 type Pass = fn(&Stage, &mut Scratch, (usize, usize), &mut Tile);
+
+/// Whether the threads' buffers are made alike after each frame. The size build has no room for that: there they
+/// grow alike within a few frames.
+const EVEN: bool = cfg!(not(luc_size));
 
 /// Buffers of the threads at work, handed out and taken back.
 #[derive(Default)]
@@ -31,6 +36,15 @@ impl Pool {
 
     fn give(&self, scratch: Scratch) {
         self.list().push(scratch);
+    }
+
+    /// Has a buffer for each thread, and in each the room that the largest tile took: which thread comes by that
+    /// one next time isn't known.
+    fn even(&mut self) {
+        let list = self.0.get_mut().unwrap_or_else(PoisonError::into_inner);
+        let threads = list.len().max(rayon::current_num_threads());
+        list.resize_with(threads, Scratch::default);
+        Scratch::even(list);
     }
 
     /// Does `pass` on all tiles, and adds what it counted.
@@ -62,8 +76,8 @@ impl Ledger {
     fn enter(&mut self, tiles: &mut [Tile]) {
         for tile in tiles {
             for side in 0..2 {
-                self.rays[side] += std::mem::take(&mut tile.rays[side]);
-                self.measured[side] += std::mem::take(&mut tile.measured[side]);
+                self.rays[side] += take(&mut tile.rays[side]);
+                self.measured[side] += take(&mut tile.measured[side]);
             }
         }
     }
@@ -81,14 +95,19 @@ fn bare_beams(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize), tile
     beams(stage, scratch, corner, tile);
 }
 
-/// Buffers that live from frame to frame.
+/// Buffers that live from frame to frame: a frame like the last one takes nothing from the heap.
 #[derive(Default)]
 pub struct Renderer {
     tiles: Vec<Tile>,
+    tables: Tables,
     scratch: Pool,
     post: Post,
     simulation: Simulation,
-    smoke: Vec<Eight>,
+    smoke: Room,
+    /// The sum of the patterns of a still that averages several.
+    sums: Vec<f32>,
+    /// What is written over a split frame.
+    titles: Option<Box<Scene>>,
     /// What the last frame did; all 0 without the feature `counters`.
     pub counters: Counters,
 }
@@ -112,7 +131,7 @@ impl Renderer {
             Volume::new(smoke, &self.simulation, &mut self.smoke, &mut self.counters)
         });
         self.counters.watch.stop();
-        let mut stage = Stage::new(scene, quality, width, height);
+        let mut stage = Stage::new(scene, quality, [width, height], &mut self.tables);
         stage.volume = volume.as_ref();
         let across = (width as usize).div_ceil(TILE);
         let down = (height as usize).div_ceil(TILE);
@@ -120,7 +139,7 @@ impl Renderer {
         let pool = &self.scratch;
         // Edges are shared out after the first pass, which finds them.
         let passes: [(Pass, bool); 3] = [(refine, true), (smooth_edges, false), (beams, false)];
-        let mut sums = Vec::new();
+        self.sums.clear();
         let mut ledger = Ledger::default();
         let patterns = if features::AVERAGE { quality.average } else { 1 };
         for pattern in 0..patterns {
@@ -136,7 +155,7 @@ impl Renderer {
                 }
             }
             if patterns > 1 {
-                average(&mut self.tiles, &mut sums, pattern + 1);
+                average(&mut self.tiles, &mut self.sums, pattern + 1);
             }
         }
         let kept = KEEPS && (scene.effects.iter().any(Effect::runs) || scene.split.is_some());
@@ -144,20 +163,25 @@ impl Renderer {
             self.counters.merge(&self.post.keep(&stage, &self.tiles, n));
         }
         // What is written over the picture are beams, in the same tiles.
-        let titles = scene.split.filter(|_| features::SPLIT).map(|split| {
-            let height = height as f32 / width as f32;
-            (split.titles)(&Figures { split, height, rays: ledger.rays, error: ledger.error() })
-        });
-        let titles = titles.filter(|titles| !titles.beams.is_empty());
-        let titles = titles.as_ref().map(|titles| Stage::new(titles, quality, width, height));
-        if let Some(titles) = &titles {
-            pool.run(titles, bare_beams, &mut self.tiles, &mut self.counters);
+        let mut lit = !kept;
+        if let Some(split) = scene.split.filter(|_| features::SPLIT) {
+            let titles = self.titles.get_or_insert_with(|| Box::new(Scene::new()));
+            titles.beams.clear();
+            let aspect = height as f32 / width as f32;
+            let (rays, error) = (ledger.rays, ledger.error());
+            let figures = Figures { split, height: aspect, rays, error };
+            (titles.camera, titles.grade) = (split.titles)(&figures, &mut titles.beams);
+            if !titles.beams.is_empty() {
+                stage = Stage::new(titles, quality, [width, height], &mut self.tables);
+                pool.run(&stage, bare_beams, &mut self.tiles, &mut self.counters);
+                lit = true;
+            }
         }
-        let lit = match &titles {
-            None if kept => None,
-            titles => Some((titles.as_ref().unwrap_or(&stage), &self.tiles[..])),
-        };
-        self.counters.merge(&self.post.finish(&stage, kept, lit, n, pixels));
+        let lit = lit.then_some(&self.tiles[..]);
+        self.counters.merge(&self.post.finish(scene, &stage, kept, lit, n, pixels));
+        if EVEN {
+            self.scratch.even();
+        }
     }
 }
 

@@ -5,5 +5,5 @@ mod stage;
 mod view;
 
 pub use frame::Renderer;
-pub use stage::Stage;
+pub use stage::{Stage, Tables};
 pub use view::{FARTHEST, MOST_STEPS, View};

@@ -32,25 +32,39 @@ pub struct Stage<'a> {
     /// Width of a pixel on the plane one unit ahead of the eye.
     pub pixel: f32,
     /// Sources of direct light.
-    pub lamps: Vec<Lamp>,
+    pub lamps: &'a [Lamp],
     /// Small lights, if the scene has any.
-    pub points: Option<Points>,
+    pub points: Option<&'a Points>,
     /// Per shape: a power of two for a transparent one, 0 for an opaque one.
-    pub bits: Vec<f32>,
+    pub bits: &'a [f32],
     /// Factor on the light that crosses each transparent shape, in the order of their bits.
-    pub tints: Vec<Vec3>,
+    pub tints: &'a [Vec3],
     /// Bounds of the shapes on the screen.
-    pub dops: Vec<Dop>,
+    pub dops: &'a [Dop],
     /// Bounds of the bodies that fields are joined of.
-    pub nodes: Vec<FieldNode>,
+    pub nodes: &'a [FieldNode],
     /// Bounds of the beams on the screen.
-    pub beams: Vec<Dop>,
+    pub beams: &'a [Dop],
     /// Bounds of the shapes as the lamps that cast shadows see them; see [`Stage::shafts`].
-    shafts: Vec<Shaft>,
+    shafts: &'a [Shaft],
     /// The scene's smoke, if it has any.
     pub volume: Option<&'a Volume<'a>>,
     /// From linear light to display values.
-    pub display: Display,
+    pub display: &'a Display,
+}
+
+/// Room for the lists of a stage; those of the next frame go into the same.
+#[derive(Default)]
+pub struct Tables {
+    lamps: Vec<Lamp>,
+    points: Points,
+    bits: Vec<f32>,
+    tints: Vec<Vec3>,
+    dops: Vec<Dop>,
+    nodes: Vec<FieldNode>,
+    beams: Vec<Dop>,
+    shafts: Vec<Shaft>,
+    display: Display,
 }
 
 /// Transparent shapes that can colour shadows: their bits must stay exact in an f32.
@@ -61,10 +75,16 @@ impl<'a> Stage<'a> {
     /// shadow; a lamp beyond the eighth casts none either.
     #[inline(never)]
     #[cfg_attr(luc_size, optimize(size))]
-    pub fn new(scene: &'a Scene, quality: &Quality, width: u32, height: u32) -> Self {
+    pub fn new(
+        scene: &'a Scene,
+        quality: &Quality,
+        [width, height]: [u32; 2],
+        tables: &'a mut Tables,
+    ) -> Self {
         let view = View { origin: scene.camera.position, world_from_view: scene.camera.world_from_camera() };
-        let mut bits = Vec::new();
-        let mut tints = Vec::new();
+        let Tables { bits, tints, beams, .. } = tables;
+        bits.clear();
+        tints.clear();
         for i in 0..scene.shape_count() {
             let material = &scene.materials[scene.shape(i).material()];
             let glass = material.is_transparent();
@@ -74,30 +94,37 @@ impl<'a> Stage<'a> {
                 tints.push(material.shadow);
             }
         }
-        let lamps = lamps(scene);
-        let shafts = shafts(scene, &lamps[..lamps.len().min(MAX_LAMPS)]);
+        lamps(scene, &mut tables.lamps);
+        shafts(scene, &tables.lamps[..tables.lamps.len().min(MAX_LAMPS)], &mut tables.shafts);
         let pixel = 2.0 * scene.camera.half_width() / width as f32;
-        let points = (features::POINTS && !scene.points.is_empty())
-            .then(|| Points::new(&scene.points, view, [width, height], pixel, quality.light_tile));
+        let has_points = features::POINTS && !scene.points.is_empty();
+        if has_points {
+            tables.points.set(&scene.points, view, [width, height], pixel, quality.light_tile);
+        }
+        dops(scene, &view, &mut tables.dops);
+        field_nodes(scene, &view, &mut tables.nodes);
+        beams.clear();
+        beams.extend(scene.beams.iter().map(|beam| Dop::of_beam(&view, beam, pixel)));
+        tables.display.set(&scene.grade);
         Self {
             scene,
             quality: *quality,
             width,
             height,
-            points,
+            points: has_points.then_some(&tables.points),
             volume: None,
             pattern: 0,
             shift: Vec2::ZERO,
             pixel,
-            dops: dops(scene, &view),
-            nodes: field_nodes(scene, &view),
-            beams: scene.beams.iter().map(|beam| Dop::of_beam(&view, beam, pixel)).collect(),
+            dops: &tables.dops,
+            nodes: &tables.nodes,
+            beams: &tables.beams,
             view,
-            lamps,
-            bits,
-            tints,
-            shafts,
-            display: Display::new(&scene.grade),
+            lamps: &tables.lamps,
+            bits: &tables.bits,
+            tints: &tables.tints,
+            shafts: &tables.shafts,
+            display: &tables.display,
         }
     }
 

@@ -3,7 +3,7 @@
 //! No light, no adaptive sampling, no post: one ray through the middle of each pixel. Only the view
 //! of the sampling and that of the small lights are ordinary frames, with an overlay all over.
 
-use super::{Renderer, Stage};
+use super::{Renderer, Stage, Tables};
 use crate::counters::{Counter, Counters};
 use crate::math::Vec3;
 use crate::math::lanes::{F, V3, splat};
@@ -60,7 +60,8 @@ impl View {
             *if sampling { &mut scene.overlay } else { &mut scene.light_count } = 1.0;
             return Renderer::default().frame(&scene, n, size, quality, pixels);
         }
-        let stage = &Stage::new(scene, quality, size.0, size.1);
+        let tables = &mut Tables::default();
+        let stage = &Stage::new(scene, quality, size.into(), tables);
         parallel::each(pixels.chunks_mut(size.0 as usize), |y, row| {
             for (k, row) in row.chunks_mut(TILE).enumerate() {
                 let candidates = stage.candidates((k * TILE, y / TILE * TILE), TILE);

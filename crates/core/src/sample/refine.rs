@@ -355,7 +355,7 @@ impl Surroundings {
                 return true;
             }
         }
-        for node in &stage.nodes {
+        for node in stage.nodes {
             let known = node.shape == own && known.any(|s| s.node() == node.index);
             if self.shapes >> (node.shape & 63) & 1 == 1 && !known && node.may_cover(at, reach, &depths) {
                 return true;

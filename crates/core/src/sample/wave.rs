@@ -37,8 +37,54 @@ pub struct Scratch {
     next: RayList,
     hits: Vec<Hits>,
     occluders: Boxes,
+    /// Rays that were drawn at random at the hits of a packet.
+    drawn: Vec<Way>,
     /// Indices of beams.
     pub(super) beams: Vec<usize>,
+}
+
+impl Scratch {
+    /// Gives each list of all of them the room that the largest of its kind has.
+    pub fn even(all: &mut [Scratch]) {
+        fn grow<T>(list: &mut Vec<T>, room: usize) {
+            list.reserve_exact(room.saturating_sub(list.len()));
+        }
+        let mut most = [0; 9];
+        for one in &*all {
+            for (most, room) in most.iter_mut().zip(one.room()) {
+                *most = room.max(*most);
+            }
+        }
+        let [samples, grid, cells, positions, packets, hits, occluders, drawn, beams] = most;
+        for one in all {
+            grow(&mut one.samples.0, samples);
+            grow(&mut one.grid, grid);
+            grow(&mut one.cells, cells);
+            grow(&mut one.positions, positions);
+            grow(&mut one.rays.packets, packets);
+            grow(&mut one.next.packets, packets);
+            grow(&mut one.hits, hits);
+            grow(&mut one.occluders.0, occluders);
+            grow(&mut one.drawn, drawn);
+            grow(&mut one.beams, beams);
+        }
+    }
+
+    /// Elements that its lists have room for.
+    fn room(&self) -> [usize; 9] {
+        [
+            self.samples.0.capacity(),
+            self.grid.capacity(),
+            self.cells.capacity(),
+            self.positions.capacity(),
+            // These two take turns.
+            self.rays.packets.capacity().max(self.next.packets.capacity()),
+            self.hits.capacity(),
+            self.occluders.0.capacity(),
+            self.drawn.capacity(),
+            self.beams.capacity(),
+        ]
+    }
 }
 
 /// Bounds of the hit points of each shape in a list of rays, lane by lane.
@@ -148,7 +194,7 @@ pub(super) fn soft(stage: &Stage, spread: F) -> F {
 #[inline(never)]
 #[cfg_attr(luc_size, optimize(size))]
 fn step(stage: &Stage, scratch: &mut Scratch, candidates: u64, level: u32) {
-    let Scratch { samples, counters, rays, next, hits, occluders: boxes, .. } = scratch;
+    let Scratch { samples, counters, rays, next, hits, occluders: boxes, drawn: ways, .. } = scratch;
     hits.clear();
     counters.watch.enter(Phase::Tracing);
     for packet in &rays.packets {
@@ -167,7 +213,7 @@ fn step(stage: &Stage, scratch: &mut Scratch, candidates: u64, level: u32) {
     }
 
     counters.watch.enter(Phase::Shading);
-    let mut found = Found::default();
+    let mut found = Found { drawn: std::mem::take(ways), ..Found::default() };
     for (k, hit) in hits.iter().enumerate() {
         let packet = &rays.packets[k];
         shade_packet(stage, packet, hit, level, &suspects, &mut found, counters);
@@ -194,6 +240,7 @@ fn step(stage: &Stage, scratch: &mut Scratch, candidates: u64, level: u32) {
             found.spawn(stage, owners, next, counters);
         }
     }
+    *ways = found.drawn;
     counters.watch.enter(Phase::Sampling);
 }
 

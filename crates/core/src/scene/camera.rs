@@ -49,7 +49,7 @@ mod tests {
     use super::*;
     use crate::math::random::Random;
     use crate::quality::Quality;
-    use crate::render::Stage;
+    use crate::render::{Stage, Tables};
     use crate::scene::Scene;
 
     #[test]
@@ -94,7 +94,9 @@ mod tests {
                 let camera =
                     Camera { position: Vec3::new(1.0, 2.0, 3.0), fov, roll: 0.3, ..Camera::default() };
                 let scene = Scene { camera, ..Scene::default() };
-                let stage = Stage::new(&scene, &Quality::PRESETS[Quality::DEFAULT].1, width, height);
+                let tables = &mut Tables::default();
+                let stage =
+                    Stage::new(&scene, &Quality::PRESETS[Quality::DEFAULT].1, [width, height], tables);
                 let middle = height as f32 * 0.5;
                 let [left, right] = [0.0, width as f32].map(|x| stage.direction(x, middle).as_dvec3());
                 #[allow(clippy::disallowed_methods, reason = "an oracle in f64 that never reaches a pixel")]

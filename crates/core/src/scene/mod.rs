@@ -174,6 +174,12 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// An empty scene: [`Scene::default`] as one function, which is large, for all who call it.
+    #[inline(never)]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
     /// Radius of lamps for the shadows of fields; 0 in builds that can't draw these.
     pub fn penumbra(&self) -> f32 {
         #[cfg(feature = "field-shadows")]

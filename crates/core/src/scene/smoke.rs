@@ -90,8 +90,8 @@ pub struct Rules {
     pub size: [usize; 3],
     /// How it moves.
     pub air: Motion,
-    /// The voxels at a step, from 1 on: a pure function.
-    pub figure: fn(u32) -> Voxels,
+    /// Sets a grid to the voxels at a step, from 1 on: a pure function of that. It comes as another step left it.
+    pub figure: fn(u32, &mut Voxels),
     /// Where the scene's first two lights are, world: what comes of them through the smoke is a part of its
     /// state, so they stay there. Light of others, which are best within, isn't dimmed.
     pub lamps: [Vec3; 2],
@@ -117,7 +117,7 @@ pub struct Rules {
 
 impl Rules {
     /// A kind of smoke, without place or size, in still air.
-    pub const fn new(figure: fn(u32) -> Voxels) -> Self {
+    pub const fn new(figure: fn(u32, &mut Voxels)) -> Self {
         Self {
             lo: Vec3::ZERO,
             cell: 1.0,

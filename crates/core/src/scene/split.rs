@@ -6,7 +6,7 @@
 //! Those rays are not counted as its cost. To measure only some pixels would not do: most of the
 //! error is that of a few, and one in four tells 10 dB too much or 3 too little.
 
-use super::Scene;
+use super::{Beam, Camera, Grade};
 
 /// Where the line is, and what is written about the two sides.
 #[derive(Clone, Copy, Debug)]
@@ -17,9 +17,9 @@ pub struct Split {
     pub slant: f32,
     /// How brightly it shines, for the titles.
     pub light: f32,
-    /// Beams that are drawn over the finished picture when the figures are known. The camera and grade
-    /// of this scene are its own; nothing else of it is drawn.
-    pub titles: fn(&Figures) -> Scene,
+    /// Adds to an empty list the beams that are drawn over the finished picture when the figures are known, and
+    /// gives the camera and grade by which they are.
+    pub titles: fn(&Figures, &mut Vec<Beam>) -> (Camera, Grade),
 }
 
 /// What the sides of a split frame cost.

@@ -56,17 +56,20 @@ impl Voxels {
 
     /// An empty grid of cells of side `cell` from the corner `lo` on.
     pub fn new(lo: Vec3, cell: f32, size: [usize; 3]) -> Self {
+        let mut empty = Self::default();
+        empty.reset(lo, cell, size);
+        empty
+    }
+
+    /// Makes it [`Voxels::new`], in the room that it has.
+    pub fn reset(&mut self, lo: Vec3, cell: f32, size: [usize; 3]) {
         let size = size.map(|n| n.min(Self::MOST));
-        let bricks: usize = size.iter().map(|n| n.div_ceil(4)).product();
-        Self {
-            lo,
-            cell,
-            size,
-            cells: vec![Self::EMPTY; size.iter().product()],
-            bricks: vec![0; bricks],
-            bounds: [lo; 2],
-            ..Self::default()
-        }
+        (self.lo, self.cell, self.size, self.bounds) = (lo, cell, size, [lo; 2]);
+        (self.material, self.groove, self.variation) = (0, 0.0, 0.0);
+        self.cells.clear();
+        self.cells.resize(size.iter().product(), Self::EMPTY);
+        self.bricks.clear();
+        self.bricks.resize(size.iter().map(|n| n.div_ceil(4)).product(), 0);
     }
 
     /// Cells along each axis.

@@ -185,7 +185,7 @@ pub fn direct(
                     let found = occlusion(
                         stage.scene,
                         &stage.quality,
-                        &stage.bits,
+                        stage.bits,
                         &rays,
                         (open, radius),
                         suspects,

@@ -28,9 +28,10 @@ pub struct Lamp {
     pub is_fill: bool,
 }
 
-/// All lamps of a scene: its lights, then one in the middle of each shining rectangle.
+/// All lamps of a scene: its lights, then one in the middle of each shining rectangle; in place of what `out`
+/// held.
 #[cfg_attr(luc_size, optimize(size))]
-pub fn lamps(scene: &Scene) -> Vec<Lamp> {
+pub fn lamps(scene: &Scene, out: &mut Vec<Lamp>) {
     let count = scene.lights.len();
     let lamp = |i: usize| {
         let (position, colour, axis, sides, inner, outer) = if i < count {
@@ -49,7 +50,8 @@ pub fn lamps(scene: &Scene) -> Vec<Lamp> {
         let is_fill = features::FILL && i < count && scene.lights[i].kind == LightKind::Fill;
         Lamp { position, colour, axis, outer, gain, sides, is_emitter: i >= count, is_fill }
     };
-    (0..count + scene.emitters.len()).map(lamp).collect()
+    out.clear();
+    out.extend((0..count + scene.emitters.len()).map(lamp));
 }
 
 impl Lamp {

@@ -23,7 +23,8 @@ struct Eight {
     radius: F,
 }
 
-/// The small lights of a scene, ready for a frame.
+/// The small lights of a scene, ready for a frame; none by default.
+#[derive(Default)]
 pub struct Points {
     eights: Vec<Eight>,
     view: View,
@@ -40,14 +41,19 @@ const SLACK: f32 = 1e-3;
 
 impl Points {
     /// Sorts `lights` into tiles of `side` px of a picture of `size` px, whose pixels are `pixel`
-    /// wide on the plane one unit ahead.
+    /// wide on the plane one unit ahead; in place of what was there.
     #[inline(never)]
     #[cfg_attr(luc_size, optimize(size))]
-    pub fn new(lights: &[PointLight], view: View, size: [u32; 2], pixel: f32, side: u32) -> Self {
+    pub fn set(&mut self, lights: &[PointLight], view: View, size: [u32; 2], pixel: f32, side: u32) {
+        let Self { eights, bands, .. } = self;
+        eights.clear();
+        for (masks, n) in bands.iter_mut().zip(size) {
+            masks.clear();
+            masks.resize(whole(n as f32 / side as f32) + 1, Mask::default());
+        }
         let side = pixel * side as f32;
         let corner = size.map(|n| -0.5 * n as f32 * pixel);
-        let mut bands = corner.map(|c| vec![Mask::default(); whole(-2.0 * c / side) + 1]);
-        let mut eights = Vec::new();
+        (self.view, self.side, self.corner) = (view, side, corner);
         for (i, light) in lights.iter().take(MAX_POINTS).enumerate() {
             if i % 8 == 0 {
                 eights.push(Eight { position: V3::splat(Vec3::INFINITY), radius: F::ZERO });
@@ -66,7 +72,6 @@ impl Points {
                 }
             }
         }
-        Self { eights, view, side, corner, bands }
     }
 
     /// Lights whose balls meet the tile at a position on the plane one unit ahead, x right and y

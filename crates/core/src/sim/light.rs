@@ -29,34 +29,40 @@ pub struct Volume<'a> {
     /// The cells as they are shown.
     shown: &'a [Eight],
     /// A cell for each brick of places: solid if there is smoke between any of them and the next.
+    full: &'a Voxels,
+}
+
+/// Room for what is made ready, which lives from frame to frame.
+#[derive(Default)]
+pub struct Room {
+    shown: Vec<Eight>,
     full: Voxels,
 }
 
 impl<'a> Volume<'a> {
-    /// The smoke of a simulation; `room` is for what is shown between two steps.
+    /// The smoke of a simulation.
     #[inline(never)]
-    pub fn new(
-        now: &Smoke,
-        simulation: &'a Simulation,
-        room: &'a mut Vec<Eight>,
-        counters: &mut Counters,
-    ) -> Self {
+    pub fn new(now: &Smoke, simulation: &'a Simulation, room: &'a mut Room, counters: &mut Counters) -> Self {
         let smoke = now.rules;
         let grid = Grid { size: smoke.size };
         counters.add(Counter::SmokeShown, grid.size.iter().product());
         let State { cells, before, .. } = simulation.state();
         let mut shown = cells;
+        // Also where a frame is at a step: the next one isn't.
+        room.shown.clear();
+        room.shown.reserve(cells.len());
         if now.behind > 0.0 {
-            room.clone_from(cells);
-            grid.each(room, 1, &|_, i, out| {
+            room.shown.extend(cells);
+            grid.each(&mut room.shown, 1, &|_, i, out| {
                 let last = F::new(*out);
                 *out = (last + (F::new(before[i]) - last) * splat(now.behind)).to_array();
             });
-            shown = room;
+            shown = &room.shown;
         }
         // Places count from half a cell before the corner.
         let lo = smoke.lo - 0.5 * smoke.cell;
-        let mut full = Voxels::new(lo, smoke.cell * BRICK as f32, grid.size.map(|n| n / BRICK + 1));
+        let full = &mut room.full;
+        full.reset(lo, smoke.cell * BRICK as f32, grid.size.map(|n| n / BRICK + 1));
         let [_, row, slice] = grid.steps();
         full.edit_all_by(&mut |at, _| {
             let first = grid.index(at.map(|i| BRICK * i as usize));
@@ -95,7 +101,7 @@ impl<'a> Volume<'a> {
         let (mut through, mut light) = (F::ONE, V3::ZERO);
         let is_full = |p: V3| self.full.values(self.full.in_cells(p)).simd_gt(F::ZERO);
         // A brick that a ray begins in is not come to.
-        let enter = voxels(rays, &self.full, end, counters).enter;
+        let enter = voxels(rays, self.full, end, counters).enter;
         let enter = enter & !is_full(rays.origin);
         let [lo, hi] = self.full.bounds();
         let (_, exit) = rays.in_box(lo, hi, end);
@@ -156,7 +162,7 @@ impl<'a> Volume<'a> {
         let code = occlusion(
             stage.scene,
             &stage.quality,
-            &stage.bits,
+            stage.bits,
             way,
             (wanted, 0.0),
             &Suspects::new(u64::MAX),
@@ -188,6 +194,6 @@ impl Volume<'_> {
 
     /// Which bricks of them are full.
     pub fn full(&self) -> &Voxels {
-        &self.full
+        self.full
     }
 }

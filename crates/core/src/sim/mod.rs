@@ -13,7 +13,7 @@ mod state;
 mod tests;
 
 pub use grid::{Eight, Grid};
-pub use light::Volume;
+pub use light::{Room, Volume};
 pub use state::{DARK, DENSITY, FASTEST, HEAT, SOLID, State};
 
 use crate::counters::Counters;
@@ -44,11 +44,12 @@ impl Simulation {
         if !is_other && self.seek(smoke.steps) {
             return self.go_on(smoke, counters);
         }
+        #[cfg(any(test, feature = "study"))]
         if is_other {
-            *self = Simulation { of: Some(smoke.rules), ..Default::default() };
+            self.kept.clear();
         }
         if is_other || self.step > smoke.steps {
-            (self.step, self.state) = (0, State::new(smoke.rules));
+            (self.of, self.step, self.state) = (Some(smoke.rules), 0, State::new(smoke.rules));
         }
         self.go_on(smoke, counters);
     }

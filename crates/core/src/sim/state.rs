@@ -58,13 +58,22 @@ pub struct State {
     pub pressure: Vec<Eight>,
     next: Vec<Eight>,
     divergence: Vec<Eight>,
+    /// What is in the way, and what smokes.
+    figure: Voxels,
 }
 
 impl State {
     /// Still air.
     pub fn new(smoke: &Rules) -> Self {
         let field = || vec![[0.0; 8]; Grid { size: smoke.size }.len()];
-        State { cells: field(), before: field(), pressure: field(), next: field(), divergence: field() }
+        State {
+            cells: field(),
+            before: field(),
+            pressure: field(),
+            next: field(),
+            divergence: field(),
+            figure: Voxels::default(),
+        }
     }
 
     /// Takes the step with this number.
@@ -73,7 +82,8 @@ impl State {
         counters.add(Counter::SmokeCells, smoke.size.iter().product());
         let grid = Grid { size: smoke.size };
         let steps = grid.steps();
-        let figure = &(smoke.figure)(number);
+        (smoke.figure)(number, &mut self.figure);
+        let figure = &self.figure;
         let air = &smoke.air;
         let most = F::new([FASTEST, FASTEST, FASTEST, f32::MAX, f32::MAX, 0.0, 0.0, 0.0]);
         // From places to the figure's cells.

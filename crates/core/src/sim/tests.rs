@@ -9,7 +9,7 @@ use crate::counters::Counter;
 use crate::math::Vec3;
 use crate::math::lanes::{F, V3, splat};
 use crate::quality::Quality;
-use crate::render::Stage;
+use crate::render::{Stage, Tables};
 use crate::scene::{Air, Edit, Light, LightKind, Scene, Voxels};
 use crate::trace::Rays8;
 use crate::trace::check::{Random, packet};
@@ -17,29 +17,26 @@ use crate::trace::check::{Random, packet};
 const SIZE: [usize; 3] = [16, 20, 12];
 
 /// A wall to the left, and a source beside it for the first 40 steps.
-fn burning(step: u32) -> Voxels {
-    let mut figure = Voxels::new(Vec3::ZERO, 0.1, [16, 20, 12]);
+fn burning(step: u32, figure: &mut Voxels) {
+    figure.reset(Vec3::ZERO, 0.1, [16, 20, 12]);
     figure.edit(Edit::Add(1), [3, 0, 2], [5, 6, 9]);
     if step <= 40 {
         figure.edit(Edit::Overwrite(Voxels::SMOKE), [8, 1, 4], [12, 4, 8]);
     }
-    figure
 }
 
 /// Smoke once, at the first step.
-fn puff(step: u32) -> Voxels {
-    let mut figure = Voxels::new(Vec3::ZERO, 0.1, [16, 20, 12]);
+fn puff(step: u32, figure: &mut Voxels) {
+    figure.reset(Vec3::ZERO, 0.1, [16, 20, 12]);
     if step == 1 {
         figure.edit(Edit::Overwrite(Voxels::SMOKE), [6, 7, 4], [11, 13, 8]);
     }
-    figure
 }
 
 /// Smoke all over.
-fn full(_: u32) -> Voxels {
-    let mut figure = Voxels::new(Vec3::ZERO, 0.1, [16, 20, 12]);
+fn full(_: u32, figure: &mut Voxels) {
+    figure.reset(Vec3::ZERO, 0.1, [16, 20, 12]);
     figure.edit_all(Edit::Overwrite(Voxels::SMOKE));
-    figure
 }
 
 /// Lively air.
@@ -55,7 +52,7 @@ const AIR: Air = Air {
     swirl: 0.0,
 };
 
-fn smoke(figure: fn(u32) -> Voxels, air: Air) -> Smoke {
+fn smoke(figure: fn(u32, &mut Voxels), air: Air) -> Smoke {
     let lamps = [Vec3::new(0.8, 1.0, -6.0), Vec3::new(-3.0, 4.0, 2.0)];
     made(Rules { cell: 0.1, size: SIZE, air: air.motion(0.1), lamps, ..Rules::new(figure) })
 }
@@ -89,8 +86,8 @@ fn greatest(simulation: &Simulation, lane: usize) -> f32 {
 #[test]
 fn however_long_it_burns_all_is_finite_bounded_and_never_subnormal() {
     // Nothing is lost but through the borders, and nothing stops the source.
-    fn ever(_: u32) -> Voxels {
-        burning(1)
+    fn ever(_: u32, figure: &mut Voxels) {
+        burning(1, figure);
     }
     let air = Air { fade: 0.0, cool: 0.0, drag: 0.0, lift: 40.0, ..AIR };
     let boiling = Air { swirl: 0.5, ..air };

@@ -9,7 +9,7 @@ use luc_core::math::lanes::{Bound, F, RAMP, V3, splat};
 use luc_core::math::{lanes_fn, noise};
 use luc_core::post::Display;
 use luc_core::quality::Quality;
-use luc_core::render::{Renderer, Stage};
+use luc_core::render::{Renderer, Stage, Tables};
 use luc_core::scene::Grade;
 use luc_core::trace::{Rays8, nearest};
 use std::hint::black_box;
@@ -57,7 +57,8 @@ fn display(n: u32) {
 fn first_rays(subject: &Subject, n: u32) {
     let scene = subject.bare(subject.frames / 2);
     let (_, quality) = Quality::PRESETS[Quality::DEFAULT];
-    let stage = Stage::new(&scene, &quality, SIZE.0, SIZE.1);
+    let tables = &mut Tables::default();
+    let stage = Stage::new(&scene, &quality, SIZE.into(), tables);
     let origin = V3::splat(scene.camera.position);
     let mut sum = F::ZERO;
     for i in 0..n * SIZE.0 * SIZE.1 / 8 {

@@ -4,6 +4,7 @@
 use super::*;
 use crate::math::lanes::{FALSE, TRUE, splat};
 use crate::quality::Quality;
+use crate::render::Tables;
 use crate::scene::{Background, Disc, Emitter, Light, LightKind, Material, Sphere};
 use crate::trace::check::{self, Random, tilted};
 use std::f32::consts::PI;
@@ -24,7 +25,8 @@ fn surface(roughness: f32, exponent: f32) -> Surface {
 
 /// What falls on a matt surface at `point` that faces up.
 fn irradiance(scene: &Scene, point: Vec3) -> Vec3 {
-    let stage = Stage::new(scene, &Quality::PRESETS[Quality::DEFAULT].1, 8, 8);
+    let tables = &mut Tables::default();
+    let stage = Stage::new(scene, &Quality::PRESETS[Quality::DEFAULT].1, [8, 8], tables);
     let up = V3::splat(Vec3::Y);
     let matt = Surface { point: V3::splat(point), ..check::surface(Material::default(), up, up, FALSE) };
     let (mut codes, mut counters) = ([F::ZERO; MAX_LAMPS], Counters::default());

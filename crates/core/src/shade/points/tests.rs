@@ -29,7 +29,8 @@ fn every_light_that_reaches_a_point_is_near_it() {
         let count = 1 + random.bits() as usize % MAX_POINTS;
         let (view, pixel, lights) = setting(&mut random, count);
         let side = [1, 4, 16, 64, 1000][round % 5];
-        let points = Points::new(&lights, view, SIZE, pixel, side);
+        let mut points = Points::default();
+        points.set(&lights, view, SIZE, pixel, side);
         // Points in and just at the edge of some light's ball, which may lie close together.
         let spread = random.size(-8, 3);
         let light = lights[random.bits() as usize % count];
@@ -58,7 +59,8 @@ fn every_light_that_reaches_a_point_is_near_it() {
 fn no_lane_no_light() {
     let mut random = Random::new(901);
     let (view, pixel, lights) = setting(&mut random, 100);
-    let points = Points::new(&lights, view, SIZE, pixel, 16);
+    let mut points = Points::default();
+    points.set(&lights, view, SIZE, pixel, 16);
     points.near(V3::ZERO, FALSE, true, |i| panic!("light {i} for no point"));
     // Points that are no numbers get whatever lights, but do no harm.
     points.near(V3::splat(Vec3::NAN), TRUE, true, |_| ());
@@ -69,7 +71,8 @@ fn a_tile_counts_the_lights_that_reach_into_it() {
     let mut random = Random::new(902);
     for _ in 0..200 {
         let (view, pixel, lights) = setting(&mut random, 60);
-        let points = Points::new(&lights, view, SIZE, pixel, 16);
+        let mut points = Points::default();
+        points.set(&lights, view, SIZE, pixel, 16);
         for _ in 0..20 {
             let (x, y) = (random.range(0.0, 320.0), random.range(0.0, 180.0));
             let (x, y) = ((x - 160.0) * pixel, (y - 90.0) * pixel);

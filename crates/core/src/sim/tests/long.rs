@@ -6,13 +6,12 @@ const SMALL: [usize; 3] = [4, 5, 3];
 const STEPS: u32 = 1_000_000;
 
 /// A wall, and a source that burns for half of each 1,000 steps, in the last quarter no more.
-fn on_and_off(step: u32) -> Voxels {
-    let mut figure = Voxels::new(Vec3::ZERO, 0.1, SMALL);
+fn on_and_off(step: u32, figure: &mut Voxels) {
+    figure.reset(Vec3::ZERO, 0.1, SMALL);
     figure.edit(Edit::Add(1), [0, 0, 0], [1, 2, 3]);
     if step % 1000 < 500 && step < STEPS / 4 * 3 {
         figure.edit(Edit::Overwrite(Voxels::SMOKE), [2, 0, 1], [4, 1, 3]);
     }
-    figure
 }
 
 /// Never out of bounds, never a subnormal number; air that clears when nothing burns, and no quarter unlike another.

@@ -6,13 +6,13 @@ use crate::sim::light::OPAQUE;
 /// What is seen of smoke, and the lamps where it says.
 fn seen(s: &Smoke, look: impl FnOnce(&Volume, &Stage)) {
     let simulation = play(*s, s.steps);
-    let mut shown = Vec::new();
+    let mut shown = Room::default();
     let volume = Volume::new(s, &simulation, &mut shown, &mut Counters::default());
     let light = |position| Light { position, colour: Vec3::splat(5.0), kind: LightKind::Point };
     let mut scene = Scene { lights: s.rules.lamps.map(light).into(), ..Default::default() };
     // One more, within.
     scene.lights.push(light(Vec3::new(0.8, 3.5, 0.6)));
-    look(&volume, &Stage::new(&scene, &Quality::PRESETS[3].1, 8, 8));
+    look(&volume, &Stage::new(&scene, &Quality::PRESETS[3].1, [8, 8], &mut Tables::default()));
 }
 
 #[test]
@@ -56,12 +56,13 @@ fn thin_smoke_scatters_nearly_as_henyey_and_greenstein_say() {
     // The sun is far along z. What comes through thin smoke is even but for the angle.
     let sun = Light { position: Vec3::Z * 1e4, colour: Vec3::splat(1e8), kind: LightKind::Point };
     let scene = Scene { lights: vec![sun], ..Default::default() };
-    let stage = Stage::new(&scene, &Quality::PRESETS[3].1, 8, 8);
+    let tables = &mut Tables::default();
+    let stage = Stage::new(&scene, &Quality::PRESETS[3].1, [8, 8], tables);
     for g in [0.0, 0.2, 0.45, 0.6, -0.4] {
         let phase = [1.0, 1.55 * g - 0.55 * g * g * g, 0.0];
         let s = made(Rules { extinction: 1e-3, phase, ..*smoke(full, Air::DEFAULT).rules });
         let simulation = play(s, 20);
-        let mut shown = Vec::new();
+        let mut shown = Room::default();
         let s = Smoke { steps: 20, ..s };
         let volume = Volume::new(&s, &simulation, &mut shown, &mut Counters::default());
         let light = |cos: f32| {

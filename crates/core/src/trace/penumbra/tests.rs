@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::math::Vec3;
-use crate::render::Stage;
+use crate::render::{Stage, Tables};
 use crate::scene::{Emitter, Join, Material, Node, Scene};
 use crate::shade::{MAX_LAMPS, Visibility, direct};
 use crate::trace::Suspects;
@@ -54,7 +54,8 @@ fn scene(nodes: Vec<Node>, radius: f32) -> Scene {
 /// Share of the lamp's light that comes to places of the floor along x.
 fn shares(scene: &Scene, quality: &Quality) -> Vec<f32> {
     let lit = |scene: &Scene| -> Vec<f32> {
-        let stage = Stage::new(scene, quality, 8, 8);
+        let tables = &mut Tables::default();
+        let stage = Stage::new(scene, quality, [8, 8], tables);
         let up = V3::splat(Vec3::Y);
         let place = |k: usize| Vec3::new((k as f32 - 120.0) * 0.025, 0.0, 0.1);
         let eight = |k: usize| {

@@ -5,7 +5,7 @@ use crate::counters::Counters;
 use crate::math::Vec3;
 use crate::math::lanes::{F, TRUE, splat as all};
 use crate::quality::Quality;
-use crate::render::Stage;
+use crate::render::{Stage, Tables};
 use crate::scene::{
     Cone, Cylinder, Field, Join, Light, LightKind, Material, Node, Pattern, Plane, Scene, Shading, Sphere,
     Texture, Triangle,
@@ -80,7 +80,7 @@ fn found(stage: &Stage, rays: &Rays8) -> Vec<[u32; 8]> {
     let solid = hits.id.simd_ge(F::ZERO);
     let quality = &Quality::PRESETS[3].1;
     let suspects = &Suspects::new(u64::MAX);
-    let shadow = occlusion(scene, quality, &stage.bits, rays, (TRUE, 0.0), suspects, counters);
+    let shadow = occlusion(scene, quality, stage.bits, rays, (TRUE, 0.0), suspects, counters);
     let s = surface(
         scene,
         &Quality::PRESETS[3].1,
@@ -119,7 +119,8 @@ fn a_lane_equals_the_same_ray_in_all_lanes() {
     for case in 0..1_500 {
         let mut scene = mixed(&mut random);
         scene.shading = [Shading::Phong, Shading::CookTorrance, Shading::Ggx][case as usize % 3];
-        let stage = Stage::new(&scene, &quality, 64, 36);
+        let tables = &mut Tables::default();
+        let stage = Stage::new(&scene, &quality, [64, 36], tables);
         let rays = packet(|| {
             if random.one_in(16) {
                 return poison[random.bits() as usize % poison.len()];
@@ -150,7 +151,8 @@ fn poisoned_rays_neither_panic_nor_hit_at_nan() {
     let mut random = Random::new(201);
     for _ in 0..50 {
         let scene = mixed(&mut random);
-        let stage = Stage::new(&scene, &Quality::named("high").unwrap(), 64, 36);
+        let tables = &mut Tables::default();
+        let stage = Stage::new(&scene, &Quality::named("high").unwrap(), [64, 36], tables);
         for eight in poisoned().chunks_exact(8) {
             let mut next = eight.iter();
             let rays = packet(|| *next.next().unwrap());
@@ -171,7 +173,7 @@ fn poisoned_rays_neither_panic_nor_hit_at_nan() {
 fn shadow(stage: &Stage, rays: &Rays8) -> F {
     let mut counters = Counters::default();
     let suspects = Suspects::new(u64::MAX);
-    occlusion(stage.scene, &stage.quality, &stage.bits, rays, (TRUE, 0.0), &suspects, &mut counters)
+    occlusion(stage.scene, &stage.quality, stage.bits, rays, (TRUE, 0.0), &suspects, &mut counters)
 }
 
 /// A row of balls along z at 2, 4, 6, …, of glass where asked, and the lamp at `lamp`.
@@ -186,7 +188,8 @@ fn row(glass: &[bool], lamp: f32) -> f32 {
         materials: vec![Material::default(), clear],
         ..Scene::default()
     };
-    let stage = Stage::new(&scene, &Quality::named("high").unwrap(), 8, 8);
+    let tables = &mut Tables::default();
+    let stage = Stage::new(&scene, &Quality::named("high").unwrap(), [8, 8], tables);
     let rays = packet(|| (Vec3::ZERO, Vec3::Z * lamp));
     shadow(&stage, &rays).to_array()[3]
 }
