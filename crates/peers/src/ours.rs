@@ -5,7 +5,7 @@ use crate::rays::{Kind, Rays};
 use luc_core::counters::Counters;
 use luc_core::math::lanes::{F, TRUE, V3, splat};
 use luc_core::math::{Mat3, Vec3};
-use luc_core::mesh::{Assembly, Instance, Mesh};
+use luc_core::mesh::{Assembly, Blockers, Instance, Mesh};
 use luc_core::scene::{Material, Scene};
 use luc_core::trace::{Hits, NONE, Rays8};
 use std::sync::Arc;
@@ -30,8 +30,10 @@ impl Tracer for Ours {
             let eight = |list: &[glam::Vec3A]| V3::from_fn(|lane| own(list[i + lane]));
             let packet = Rays8 { origin: eight(&rays.origins), direction: eight(&rays.directions) };
             let end = F::new(std::array::from_fn(|lane| rays.ends[i + lane]));
+            // The others don't know what hid the rays before either.
+            let blockers = Blockers::new([NONE; 4]);
             let mut best = Hits { t: end, id: splat(NONE) };
-            self.0.meshes.search(&self.0, &packet, TRUE, any, &mut best, &mut counters);
+            self.0.meshes.search(&self.0, &packet, TRUE, any.then_some(&blockers), &mut best, &mut counters);
             let missed = best.t.simd_eq(end);
             let t = missed.select(splat(f32::INFINITY), best.t);
             out[i..i + 8].copy_from_slice(t.as_array());
