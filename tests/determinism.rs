@@ -6,11 +6,12 @@
 mod support;
 
 use luc::show;
+use luc_core::math::fingerprint::Fingerprint;
 use luc_core::quality::Quality;
 use luc_core::render::Renderer;
 use support::crossing::{self, Backdrop, Thing};
 use support::golden::{self, FINGERPRINTS, FRAMES, SIZE, VALUE_SIZE, VALUES};
-use support::picture::{Picture, fingerprint};
+use support::picture::Picture;
 use support::run;
 
 /// Renders frame `n` of the show on `threads` threads.
@@ -217,7 +218,8 @@ fn frames_of_all_parts_have_one_value_on_any_number_of_threads() {
         for threads in [1, 2, 3, 8] {
             let n = golden::global(part, frame);
             let picture = on_threads(&mut Renderer::default(), threads, n, VALUE_SIZE, "high");
-            let line = golden::line((part, frame, "high", VALUE_SIZE), fingerprint(&picture.pixels));
+            let line =
+                golden::line((part, frame, "high", VALUE_SIZE), Fingerprint::of_pixels(&picture.pixels));
             let command = golden::replay(part, frame, "high", VALUE_SIZE);
             assert!(
                 kept.contains(&line),
@@ -234,7 +236,7 @@ fn the_executable_writes_frames_with_the_kept_fingerprints() {
     let values = VALUES.map(|(part, n)| (part, n, "high", VALUE_SIZE));
     for frame in FINGERPRINTS.into_iter().chain(values) {
         let (part, n, preset, size) = frame;
-        let line = golden::line(frame, fingerprint(&executable(part, n, preset, size).pixels));
+        let line = golden::line(frame, Fingerprint::of_pixels(&executable(part, n, preset, size).pixels));
         let command = golden::replay(part, n, preset, size);
         assert!(kept.contains(&line), "no table holds {line}  replay: {command}");
     }

@@ -14,9 +14,10 @@
 mod support;
 
 use luc::show;
+use luc_core::math::fingerprint::Fingerprint;
 use luc_core::output::png;
 use support::golden::{self, FINGERPRINTS, FRAMES, SIZE, VALUE_SIZE, VALUES};
-use support::picture::{Picture, fingerprint};
+use support::picture::Picture;
 
 /// Whether to rewrite the files instead of comparing with them.
 fn bless() -> bool {
@@ -66,8 +67,9 @@ fn every_golden_frame_has_exactly_its_pixels() {
 /// Holds frames against the table in `file`.
 fn have_their_fingerprints(file: &str, frames: &[golden::Frame]) {
     let path = golden::directory().join(file);
-    let print =
-        |&(part, n, preset, size): &golden::Frame| fingerprint(&golden::render(part, n, preset, size).pixels);
+    let print = |&(part, n, preset, size): &golden::Frame| {
+        Fingerprint::of_pixels(&golden::render(part, n, preset, size).pixels)
+    };
     let lines: Vec<String> = frames.iter().map(|frame| golden::line(*frame, print(frame))).collect();
     if bless() {
         write(&path, lines.concat().as_bytes());
@@ -110,6 +112,6 @@ fn a_difference_is_told_in_numbers_and_in_a_picture() {
     assert_eq!((side_by_side.width, side_by_side.height), (9, 2));
     assert_eq!(side_by_side.pixels[9..], [0, 0, 0, 0, 0x0001_2003, 0, 0, 0x0008_ff18, 0]);
     // FNV-1a of nothing and of the bytes "foobar", from its authors' test vectors.
-    assert_eq!(fingerprint(&[]), 0xcbf2_9ce4_8422_2325);
-    assert_eq!(fingerprint(&[0x0066_6f6f, 0x0062_6172]), 0x8594_4171_f739_67e8);
+    assert_eq!(Fingerprint::of_pixels(&[]), 0xcbf2_9ce4_8422_2325);
+    assert_eq!(Fingerprint::of_pixels(&[0x0066_6f6f, 0x0062_6172]), 0x8594_4171_f739_67e8);
 }

@@ -4,6 +4,7 @@ mod support;
 
 use luc::show;
 use luc::show::score::{self, SCORE, SECTIONS};
+use luc_core::math::fingerprint::Fingerprint;
 use luc_core::synth::score::Section;
 use luc_core::synth::stream::{Stream, Tune};
 use luc_core::synth::{BAR, RATE, meter, pcm};
@@ -40,10 +41,9 @@ fn from_sixteenth(step: u32, seconds: f32) -> &'static [[f32; 2]] {
     &whole()[first..first + (seconds * RATE as f32) as usize]
 }
 
-/// FNV-1a of the samples as 16 bits, which is what is heard and written.
+/// Fingerprint of the samples as 16 bits, which is what is heard and written.
 fn fingerprint(samples: &[[f32; 2]]) -> u64 {
-    let bytes = samples.as_flattened().iter().flat_map(|&v| pcm(v).to_le_bytes());
-    bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3))
+    Fingerprint::of(samples.as_flattened().iter().flat_map(|&v| pcm(v).to_le_bytes()))
 }
 
 fn decibels(amplitude: f32) -> f64 {

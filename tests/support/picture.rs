@@ -40,12 +40,6 @@ pub fn psnr(a: &[u32], b: &[u32]) -> f64 {
     db
 }
 
-/// FNV-1a of the pixels' bytes red, green, blue, 64 bits.
-pub fn fingerprint(pixels: &[u32]) -> u64 {
-    let bytes = pixels.iter().flat_map(|p| p.to_be_bytes().into_iter().skip(1));
-    bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3))
-}
-
 /// The pixels of a scene at frame 0 by a new renderer, and that.
 pub fn draw(scene: &Scene, (width, height): (u32, u32), quality: &Quality) -> (Vec<u32>, Renderer) {
     let (mut renderer, mut pixels) = (Renderer::default(), vec![0; (width * height) as usize]);

@@ -5,17 +5,12 @@
 //! suite itself compares the same table.
 
 use luc::show;
+use luc_core::math::fingerprint::Fingerprint;
 use luc_core::quality::Quality;
 use luc_core::render::Renderer;
 
 /// Numbers of threads that each frame is rendered on.
 const THREADS: [usize; 4] = [1, 2, 3, 8];
-
-/// FNV-1a of the pixels' bytes red, green, blue, 64 bits.
-fn fingerprint(pixels: &[u32]) -> u64 {
-    let bytes = pixels.iter().flat_map(|p| p.to_be_bytes().into_iter().skip(1));
-    bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3))
-}
 
 /// Number of the show's frame, quality, size and value of a line.
 fn parse(line: &str) -> Option<(u64, Quality, (u32, u32), u64)> {
@@ -45,7 +40,7 @@ pub fn run(args: &[String]) -> Result<(), String> {
             let pool = pool.map_err(|e| e.to_string())?;
             let mut pixels = vec![0; (size.0 * size.1) as usize];
             pool.install(|| show::frame(&mut Renderer::default(), n, size, &quality, &mut pixels));
-            let found = fingerprint(&pixels);
+            let found = Fingerprint::of_pixels(&pixels);
             if found != value {
                 println!("{line}: {found:016x} on {threads} threads");
                 wrong += 1;

@@ -1,5 +1,6 @@
 //! Shared by the tests of this module: error in ulp, sweeps over all floats, fingerprints of bits.
 
+use super::fingerprint;
 use crate::math::hash::hash2;
 
 /// Every 1009th float bit pattern: all signs and exponents, infinities and NaNs.
@@ -50,12 +51,12 @@ impl<'a> Worst<'a> {
     }
 }
 
-/// FNV-1a over the bits of results; all NaNs count as one, since their payload is unspecified.
-pub struct Fingerprint(u64);
+/// Fingerprint of the bits of results; all NaNs count as one, since their payload is unspecified.
+pub struct Fingerprint(fingerprint::Fingerprint);
 
 impl Fingerprint {
     pub fn new() -> Self {
-        Fingerprint(0xcbf2_9ce4_8422_2325)
+        Fingerprint(fingerprint::Fingerprint::default())
     }
 
     pub fn add(&mut self, v: f32) {
@@ -63,12 +64,10 @@ impl Fingerprint {
     }
 
     pub fn add_bits(&mut self, bits: u32) {
-        for byte in bits.to_le_bytes() {
-            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
-        }
+        self.0.add(bits.to_le_bytes());
     }
 
     pub fn value(&self) -> u64 {
-        self.0
+        self.0.value()
     }
 }

@@ -50,6 +50,7 @@ pub fn whole(x: f32) -> usize {
     return x as i32 as u32 as usize;
 }
 
+pub mod fingerprint;
 pub mod hash;
 pub mod lanes;
 pub mod lanes_f64;

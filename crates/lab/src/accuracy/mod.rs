@@ -23,6 +23,7 @@ use crate::subject::Subject;
 use knob::{Change, Knob, On, Truth};
 use knobs::knobs;
 use lexopt::prelude::*;
+use luc_core::math::fingerprint::Fingerprint;
 use luc_core::quality::Quality;
 use luc_core::render::Renderer;
 use measure::{Effort, Task};
@@ -163,21 +164,18 @@ pub fn run(args: &[String]) -> Result<(), String> {
 
 /// A number that changes with what the engine draws: small drafts of all parts, and the presets.
 fn fingerprint() -> u64 {
-    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
-    let mut add = |bytes: &[u8]| {
-        bytes.iter().for_each(|&b| hash = (hash ^ u64::from(b)).wrapping_mul(0x0000_0100_0000_01b3));
-    };
+    let mut all = Fingerprint::default();
     let mut renderer = Renderer::default();
     let mut pixels = vec![0; 64 * 36];
     for subject in Subject::show() {
-        add(subject.name.as_bytes());
+        all.add(subject.name.bytes());
         for n in subject.spread(4).take(2) {
             renderer.frame(&subject.bare(n), n, (64, 36), &knob::base(), &mut pixels);
-            pixels.iter().for_each(|p| add(&p.to_be_bytes()));
+            pixels.iter().for_each(|p| all.add(p.to_be_bytes()));
         }
     }
-    add(format!("{:?}", Quality::PRESETS).as_bytes());
-    hash
+    all.add(format!("{:?}", Quality::PRESETS).bytes());
+    all.value()
 }
 
 impl Study {

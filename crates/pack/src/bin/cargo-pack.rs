@@ -28,9 +28,9 @@ target/pack/luc-safe, the same program unpacked, and prints what became of each 
                      engine: target/pack/floor, what any such program costs
   -h, --help         this text
 
-Exit code 1: over 65,536 bytes (the floor: 20,480), or it has machinery of the engine that none of its parts calls for, or
-lacks some that one does, or it calls the platform's libm, which differs between machines,
-or the packed file does something else than the unpacked one.
+Exit code 1: over 65,536 bytes (the floor: 20,480), or it has machinery of the engine that none of
+its parts calls for, or lacks some that one does, or it calls the platform's libm, which differs
+between machines, or the packed file does something else than the unpacked one.
 Exit code 2: it can't be built.
 ";
 

@@ -9,6 +9,7 @@
 //! one build: package, version, features and kind. (Two crates with the same number would be the compiler's error.)
 
 use crate::Error;
+use luc_core::math::fingerprint::Fingerprint;
 use std::ffi::OsString;
 use std::process::Command;
 
@@ -37,17 +38,11 @@ fn renamed(arguments: &[OsString], package: &str) -> Vec<OsString> {
             identity.push_str(&format!("\n{option} {value}"));
         }
     }
-    let number = format!("{METADATA}{:016x}", hash(identity.as_bytes()));
+    let number = format!("{METADATA}{:016x}", Fingerprint::of(identity.bytes()));
     let is_number = |argument: &OsString| argument.to_str().is_some_and(|text| text.starts_with(METADATA));
     let replaced =
         |argument: &OsString| if is_number(argument) { number.clone().into() } else { argument.clone() };
     arguments.iter().map(replaced).collect()
-}
-
-/// FNV-1a, 64 bits: the standard library's hash may change with its version.
-fn hash(bytes: &[u8]) -> u64 {
-    let step = |hash: u64, &byte: &u8| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
-    bytes.iter().fold(0xcbf2_9ce4_8422_2325, step)
 }
 
 #[cfg(test)]
