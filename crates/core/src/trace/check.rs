@@ -6,9 +6,11 @@
 //! - **Lost**: no crossing reported though the shape is crossed, ahead, and so it is shrunk by 4 δ.
 //! - **False**: a crossing reported though the shape grown by 4 δ is missed.
 //! - **Score** of a distance t: |t - ref| / max(unit, ulp(ref) / 2), where unit is how far ref moves
-//!   when the shape grows or shrinks by δ (to the middle of the chord, where it vanishes), or a
-//!   quarter of that for 4 δ, where more. A cone's slope and its tip are rounded apart, so the slope may
+//!   when the shape grows or shrinks by δ, or a quarter of that for 4 δ, where more. Where the ray misses
+//!   the shape by less than that, ref moves to the last crossing there is: over the skins it took, if over 1. A cone's slope and its tip are rounded apart, so the slope may
 //!   move alone, or against the tip: a ray along the side through the tip is within or without by their difference.
+//!   And the ray may move aside, alone or while the shape shrinks: near a tip, or where it grazes a side close
+//!   to an end, that moves ref as no growth does.
 //!
 //! `{:?}` of an f32 reads back to the same bits, so a printed shape and ray replay a failure.
 
@@ -144,9 +146,12 @@ impl Tally {
             if open != [false; 2] && !(parts(0, skin) && parts(1, skin)) {
                 continue;
             }
-            let bent =
-                |skin: f64, slope: f64| truth(&line, [skin, skin, slope]).and_then(|e| through(e, open));
-            let truth = |skin: f64| bent(skin, skin);
+            let (right, up) = line.d.normalize().any_orthonormal_pair();
+            let bent = |[skin, slope, x, y]: [f64; 4]| {
+                let moved = Line { o: line.o + right * x + up * y, ..line };
+                truth(&moved, [skin, skin, slope]).and_then(|e| through(e, open))
+            };
+            let truth = |skin: f64| bent([skin, skin, 0.0, 0.0]);
             let exact = closed.and_then(|e| through(e, open));
             // What is crossed far out only counts by the skin there.
             let nearest =
@@ -169,24 +174,26 @@ impl Tally {
                 self.fail("order", replay);
             }
             let Some(exact) = exact else { continue };
-            let middle = 0.5 * (exact.t[0] + exact.t[1]);
             for k in 0..2 {
                 let (want, got) = (exact.t[k], f64::from(t[k][i]));
                 if want.abs() * length > 1e6 * reach && want != -1.0 {
                     continue;
                 }
                 let skin = U * (reach + want.abs() * length);
-                let moved =
-                    |side: f64, slope: f64| (bent(side, slope).map_or(middle, |e| e.t[k]) - want).abs();
-                let unit = |side: f64, slope: f64| {
-                    let both = |by: f64| moved(side * by, slope * by).max(moved(-side * by, -slope * by));
-                    both(skin).max(0.25 * both(4.0 * skin))
+                let moved = |ways: [f64; 4], skins: f64| {
+                    let at = |share: f64| bent(ways.map(|way| skins * share * way * skin));
+                    let (inside, share) = at(1.0).map_or_else(|| last(at), |e| (Some(e), 1.0));
+                    inside.map_or(0.0, |e| (e.t[k] - want).abs()) / (skins.abs() * share).max(1.0)
+                };
+                let unit = |ways: [f64; 4]| {
+                    [1.0, -1.0, 4.0, -4.0].map(|skins| moved(ways, skins)).into_iter().fold(0.0, f64::max)
                 };
                 let score = |unit: f64| (got - want).abs() / unit.max(half_ulp(want));
-                let mut unit_here = unit(1.0, 1.0);
+                let mut unit_here = unit([1.0, 1.0, 0.0, 0.0]);
                 if score(unit_here) > 1.0 {
-                    let against = (0..8).map(|i| unit(1.0 / f64::from(1 << i), -1.0));
-                    unit_here = against.fold(unit_here.max(unit(0.0, 1.0)), f64::max);
+                    let against = (0..8).map(|i| [1.0 / f64::from(1 << i), -1.0, 0.0, 0.0]);
+                    let ways = against.chain(std::iter::once([0.0, 1.0, 0.0, 0.0])).chain(aside());
+                    unit_here = ways.map(unit).fold(unit_here, f64::max);
                 }
                 if unit_here == f64::INFINITY {
                     continue;
@@ -199,6 +206,29 @@ impl Tally {
             }
         }
     }
+}
+
+/// Ways to move the ray aside, in a star of 16, while the shape stays or changes by a part of that.
+fn aside() -> impl Iterator<Item = [f64; 4]> {
+    [0.0, 0.25, 1.0 / 16.0].into_iter().flat_map(|grown| {
+        (0..16).map(move |i| {
+            let turn = f64::from(i) * std::f64::consts::PI / 8.0;
+            [grown, grown, turn.cos(), turn.sin()]
+        })
+    })
+}
+
+/// The last crossings as the shape shrinks, and the share of the way to that: `at` 0 it is crossed, at 1 it isn't.
+fn last(at: impl Fn(f64) -> Option<Inside>) -> (Option<Inside>, f64) {
+    let (mut there, mut gone, mut inside) = (0.0, 1.0, at(0.0));
+    for _ in 0..40 {
+        let share = 0.5 * (there + gone);
+        match at(share) {
+            Some(e) => (there, inside) = (share, Some(e)),
+            None => gone = share,
+        }
+    }
+    (inside, there)
 }
 
 /// What is left of the crossings where ends are open: an inner wall instead of the first crossing,

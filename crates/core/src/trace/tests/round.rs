@@ -187,8 +187,17 @@ fn named_cylinders() {
         (short, v(1.0, 3.0, 0.0), -Vec3::Y),
         (tall, v(1.0, 3.0, 0.0), -Vec3::Y),
     ];
+    // Along the side: shrunk by a skin, what is left is at an end. And touching the side at an end.
+    let axis = v(0.20928396, -0.9658429, 0.15279998);
+    let flat = bar(v(3565.486, -18967.828, 14171.789), axis, 13.926331, 0.46465);
+    let axis = v(-0.79116005, 0.52380025, 0.31575176);
+    let thin = bar(v(0.0011370152, -0.00079557777, 0.0009887462), axis, 0.013257507, 2.1698549);
+    let found = [
+        (flat, v(3552.4556, -18970.068, 14176.164), v(-0.01991356, 0.09190083, -0.014539057)),
+        (thin, v(-1.6732647, 1.1226677, 0.67694706), v(-0.79079795, 0.5133425, 0.33334374)),
+    ];
     let mut tally = Tally::new("cylinder, named");
-    for (s, o, d) in cases {
+    for (s, o, d) in cases.into_iter().chain(found) {
         judge_cylinder(&mut tally, &s, &packet(|| (o, d)));
     }
     tally.finish(4.0);
@@ -278,10 +287,21 @@ fn named_cones() {
         judge_cone(&mut tally, &s, &packet(|| (o, d)));
     }
     // Behind the eye, along the side and so near to the tip that it is the point where the ray starts anew.
+    let closed = |tip, axis, slope, height| frustum(tip, axis, slope, [0.0, height], [true; 2]);
     let (tip, axis) = (v(0.04178075, 0.016215187, -0.017201947), v(0.4068821, 0.8525499, 0.32803312));
-    let s = frustum(tip, axis, 0.53960305, [0.0, 0.2010007], [true; 2]);
-    let ray = (v(5.910433, 9.069986, -1.579223), v(0.53831387, 0.83047533, -0.14327952));
-    judge_cone(&mut tally, &s, &packet(|| ray));
+    let wide = closed(tip, axis, 0.53960305, 0.2010007);
+    let (tip, axis) = (v(0.16525917, 0.1712711, -0.27430025), v(-0.30176482, -0.46102563, 0.8345019));
+    let narrow = closed(tip, axis, 0.056435302, 0.05745146);
+    let (tip, axis) = (v(0.017124727, 0.0011533848, 0.04188322), v(-0.34166944, 0.9151274, -0.21401855));
+    let needle = closed(tip, axis, 0.011243525, 0.01203541);
+    let found = [
+        (wide, v(5.910433, 9.069986, -1.579223), v(0.53831387, 0.83047533, -0.14327952)),
+        (narrow, v(16.881786, 21.10251, -43.041744), v(0.33125666, 0.41477588, -0.8474846)),
+        (needle, v(0.09109461, -0.1902167, 0.08686154), v(0.35216928, -0.9111095, 0.21414098)),
+    ];
+    for (s, o, d) in found {
+        judge_cone(&mut tally, &s, &packet(|| (o, d)));
+    }
     tally.finish(4.0);
 }
 
