@@ -98,7 +98,11 @@ fn digits(words: &mut [u8], mut n: u64) {
 fn titles(figures: &Figures, beams: &mut Vec<Beam>) -> (Camera, Grade) {
     let height = figures.height;
     let split = &figures.split;
-    let at = |y: f32| Vec3::new(split.x + split.slant * y, height * y, -1.0);
+    // Half of the height, or what it would be in a less high picture of this width.
+    let unit = height.min(0.5625);
+    // Here the picture is two units wide.
+    let z = unit / -0.5625;
+    let at = |y: f32| Vec3::new(split.x + split.slant * y, height * y, z);
     for (width, colour) in [(0.0036, v(3.3, 2.4, 1.35)), (0.03, v(0.3, 0.16, 0.08))] {
         let colour = colour * split.light;
         beams.push(Beam { from: at(1.2), to: at(-1.2), width, colour, fade: 0.0 });
@@ -112,8 +116,6 @@ fn titles(figures: &Figures, beams: &mut Vec<Beam>) -> (Camera, Grade) {
     sampled.copy_from_slice(CAPTIONS[1]);
     digits(&mut sampled[13..15], tenths / 10);
     digits(&mut sampled[16..17], tenths % 10);
-    // Half of the height, or what it would be in a less high picture of this width.
-    let unit = height.min(0.5625);
     for (words, x, y, step, colour) in [
         (left.trim_ascii_start(), -0.9, 0.25, 0.034, v(2.4, 2.2, 2.5)),
         (CAPTIONS[0], -0.9, 0.1, 0.02, v(1.0, 0.9, 1.5)),
@@ -122,7 +124,7 @@ fn titles(figures: &Figures, beams: &mut Vec<Beam>) -> (Camera, Grade) {
     ] {
         let line = Line {
             words,
-            origin: Vec3::new(x, unit * y - height, -1.0),
+            origin: Vec3::new(x, unit * y - height, z),
             right: unit * step * 0.85,
             up: Vec3::new(0.0, unit * step, 0.0),
             width: unit * step * 0.24,
@@ -130,7 +132,7 @@ fn titles(figures: &Figures, beams: &mut Vec<Beam>) -> (Camera, Grade) {
         };
         write(beams, &line, Vec3::ZERO, 99.0);
     }
-    // The plane one unit ahead is two units wide.
+    // The plane one unit ahead is two units wide, if the picture isn't wider than 16:9.
     let camera = Camera { position: Vec3::ZERO, target: Vec3::NEG_Z, fov: angle(90.0), ..Camera::default() };
     (camera, Grade { bloom_threshold: 0.9, bloom: 0.5, ..Grade::DEFAULT })
 }

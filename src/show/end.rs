@@ -15,6 +15,9 @@ const BACK: [Key; 2] = [key(5.6, 0.0, Ease::Smooth), key(8.0, 1.0, Ease::Step)];
 /// Seconds from one line's first letter to the next line's.
 const LINES: f32 = 1.6;
 
+/// Width of the words' strokes, world units.
+pub const STROKE: f32 = 0.035;
+
 pub const WORDS: [&[u8]; 3] = [b"THANKS", b"FOR FOLLOWING", b"THE LIGHT"];
 
 /// Colours of the sky at the heights that Lúč's sky has.
@@ -78,8 +81,9 @@ pub fn scene(frame: u64) -> Scene {
     let camera = &mut scene.camera;
     camera.position = Vec3::new(-8.06 + 0.03 * t, 3.31, 31.1 - 0.1 * t).lerp(camera.position, back);
     camera.target = v(-4.35, 1.85, 8.87).lerp(camera.target, back);
-    // The words go out with it.
-    if near == 0.0 {
+    // The words go out before it passes them: it moves as of 5.6 s.
+    let words_light = (17.25 - 3.0 * t).min(1.0);
+    if words_light <= 0.0 {
         return scene;
     }
     for (k, words) in WORDS.into_iter().enumerate() {
@@ -89,8 +93,8 @@ pub fn scene(frame: u64) -> Scene {
             origin: Vec3::new(-10.6, 0.0, 13.1 + 2.6 * k),
             right: 0.19,
             up: v(0.0, 0.0, -0.34),
-            width: 0.035,
-            colour: v(1.0, 0.52, 0.18) * (1.5 * near),
+            width: STROKE,
+            colour: v(1.0, 0.52, 0.18) * (1.5 * words_light),
         };
         write(&mut scene.beams, &line, camera.position, (t - 0.2 - LINES * k) * 12.0);
     }

@@ -137,4 +137,34 @@ mod tests {
             assert!((moved - Vec3::X * (wide + GAP)).length() < 1e-5, "{letter} moved by {moved}");
         }
     }
+
+    #[test]
+    fn no_word_is_cut_off_at_any_shape_of_the_picture() {
+        use super::super::{end, luc};
+        let mut seen = [0; 2];
+        let luc = (0..144).map(|i| ("luc", 5 * i, luc::scene(5 * i), luc::LINE.width));
+        let end = (0..96).map(|i| ("end", 5 * i, end::scene(5 * i), end::STROKE));
+        for (part, frame, scene, width) in luc.chain(end) {
+            let (camera, view) = (scene.camera, scene.camera.world_from_camera().transpose());
+            for beam in scene.beams.iter().filter(|beam| beam.width == width) {
+                seen[(part == "end") as usize] += 1;
+                for world in [beam.from, beam.to] {
+                    let p = view * (world - camera.position);
+                    // Half of a picture 16 wide, with half a stroke to spare.
+                    let at = (p.truncate().abs() + width) * (8.0 / p.z / camera.half_width());
+                    for (w, h) in
+                        [(16.0, 9.0), (16.0, 10.0), (4.0, 3.0), (21.0, 9.0), (1.0, 1.0), (32.0, 9.0)]
+                    {
+                        let spanned: f32 = f32::min(w, h * 16.0 / 9.0);
+                        let room = [w, h].map(|side| side * 8.0 / spanned);
+                        assert!(
+                            at.x < room[0] && at.y < room[1],
+                            "{part} {frame} at {w}:{h}: {at} of {room:?}"
+                        );
+                    }
+                }
+            }
+        }
+        assert!(seen.iter().all(|&strokes| strokes > 1000), "{seen:?} strokes");
+    }
 }

@@ -70,6 +70,12 @@ pub struct Tables {
 /// Transparent shapes that can colour shadows: their bits must stay exact in an f32.
 const MAX_TRANSPARENT: usize = 23;
 
+/// Pixels that the camera's field of view spans: the width, or in a wider picture than 16:9 that of one so high.
+fn spanned(width: u32, height: u32) -> f32 {
+    // f32 rounds 16 / 9 up: a picture of just that shape is spanned by its width.
+    (width as f32).min(height as f32 * (16.0 / 9.0))
+}
+
 impl<'a> Stage<'a> {
     /// Prepares a frame of `width` by `height` px. A transparent shape beyond the 23rd casts no
     /// shadow; a lamp beyond the eighth casts none either.
@@ -96,7 +102,7 @@ impl<'a> Stage<'a> {
         }
         lamps(scene, &mut tables.lamps);
         shafts(scene, &tables.lamps[..tables.lamps.len().min(MAX_LAMPS)], &mut tables.shafts);
-        let pixel = 2.0 * scene.camera.half_width() / width as f32;
+        let pixel = 2.0 * scene.camera.half_width() / spanned(width, height);
         let has_points = features::POINTS && !scene.points.is_empty();
         if has_points {
             tables.points.set(&scene.points, view, [width, height], pixel, quality.light_tile);

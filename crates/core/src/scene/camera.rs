@@ -1,4 +1,7 @@
 //! A pinhole camera: position, target, roll and horizontal field of view.
+//!
+//! A picture wider than 16:9 shows more at the sides instead of less above and below: fov is then that of the
+//! 16:9 picture in its middle.
 
 use crate::math::scalar::sin_cos;
 use crate::math::{Mat3, Vec3, cross};
@@ -12,7 +15,7 @@ pub struct Camera {
     pub target: Vec3,
     /// Rotation about the view axis, radians; positive turns the camera anticlockwise.
     pub roll: f32,
-    /// Horizontal field of view, radians, over 0 and under pi.
+    /// Horizontal field of view of a picture not wider than 16:9, radians, over 0 and under pi.
     pub fov: f32,
 }
 
@@ -85,6 +88,19 @@ mod tests {
         let [a, b] = [level, quarter].map(|camera| camera.world_from_camera());
         assert!((b.x_axis - a.y_axis).length() < 1e-6, "its right side is where up was");
         assert!((b.y_axis + a.x_axis).length() < 1e-6, "its upper side is on the left");
+    }
+
+    #[test]
+    fn a_picture_wider_than_16_to_9_is_as_high_as_one_of_that_shape() {
+        let scene = Scene::default();
+        let top = |size| {
+            let tables = &mut Tables::default();
+            let stage = Stage::new(&scene, &Quality::PRESETS[Quality::DEFAULT].1, size, tables);
+            stage.direction(size[0] as f32 * 0.5, 0.0)
+        };
+        for size in [[840, 360], [2560, 360], [641, 360]] {
+            assert!((top(size) - top([640, 360])).length() < 1e-6, "{size:?}");
+        }
     }
 
     #[test]
