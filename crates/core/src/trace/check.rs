@@ -212,8 +212,8 @@ impl Tally {
 fn aside() -> impl Iterator<Item = [f64; 4]> {
     [0.0, 0.25, 1.0 / 16.0].into_iter().flat_map(|grown| {
         (0..16).map(move |i| {
-            let turn = f64::from(i) * std::f64::consts::PI / 8.0;
-            [grown, grown, turn.cos(), turn.sin()]
+            let (sin, cos) = sin_cos(i as f32 * core::f32::consts::FRAC_PI_8);
+            [grown, grown, cos.into(), sin.into()]
         })
     })
 }
