@@ -1,4 +1,5 @@
-//! Random points and directions, well distributed: the R2 sequence turned by hashed bits.
+//! Points and directions, well distributed: the R2 sequence, turned by hashed bits where they are to be
+//! random, and a sequence for the few samples of a pixel or a lamp.
 
 use super::hash::{hash2_x8, unit_x8};
 use super::lanes::{F, U, V3, copysign, splat, splat_u};
@@ -15,6 +16,18 @@ pub fn r2(i: u32) -> Vec2 {
         x - x.floor()
     };
     Vec2::new(along(0.754_877_7), along(0.569_840_3))
+}
+
+/// Point `i` of a few that stand for a unit square, from its middle on, 256 at most. Of all steps in
+/// 256ths these tell the share of the square behind a straight edge best, for 2, 3, 4, 8, 16 and 64 points: at 4
+/// the error is 0.095 (root mean square over all edges that come near), with R2, whose first points lie to one
+/// side, 0.140.
+pub fn spread(i: u32) -> Vec2 {
+    let along = |step: f32| {
+        let x = 0.5 + i as f32 * step;
+        x - x.floor()
+    };
+    Vec2::new(along(209.0 / 256.0), along(79.0 / 256.0))
 }
 
 /// Point `i` in the unit square, without its upper borders, of each lane's own sequence: R2 moved
@@ -47,6 +60,8 @@ pub fn cosine(n: V3, (u, v): (F, F)) -> V3 {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::disallowed_methods, reason = "an oracle in f64 that never reaches a pixel")]
+
     use super::*;
     use crate::math::Vec3;
     use crate::trace::check::Random;
@@ -85,6 +100,48 @@ mod tests {
         assert!((sum / count - 2.0 / 3.0).abs() < 1e-3, "{}", sum / count);
         assert!((square / count - 0.5).abs() < 1e-3, "{}", square / count);
         assert!(across.length() / (count as f32) < 4e-3, "{across}");
+    }
+
+    /// Share of the square of side 1 around (0, 0) where `n.p < d`, for a unit vector `n` in the first octant:
+    /// a trapezoid's density from middle to ends, integrated.
+    fn share(n: [f64; 2], d: f64) -> f64 {
+        let [a, b] = [n[0].abs().max(n[1].abs()), n[0].abs().min(n[1].abs())];
+        let (inner, outer) = ((a - b) / 2.0, (a + b) / 2.0);
+        let x = d.abs();
+        let half =
+            if x <= inner { x / a } else { 0.5 - (outer - x).max(0.0).powi(2) / (2.0 * a * b).max(1e-300) };
+        0.5 + half.copysign(d)
+    }
+
+    /// Root mean square of the error of the covered share, over straight edges in all directions.
+    fn error(points: &[Vec2]) -> f64 {
+        let (mut sum, mut count) = (0.0, 0.0);
+        for angle in 0..64 {
+            let (sin, cos) = ((angle as f64 + 0.5) * std::f64::consts::TAU / 64.0).sin_cos();
+            for step in -48..48 {
+                let d = (step as f64 + 0.5) / 64.0;
+                let before = |p: &&Vec2| (f64::from(p.x) - 0.5) * cos + (f64::from(p.y) - 0.5) * sin < d;
+                let found = points.iter().filter(before).count() as f64 / points.len() as f64;
+                sum += (found - share([cos, sin], d)).powi(2);
+                count += 1.0;
+            }
+        }
+        (sum / count).sqrt()
+    }
+
+    #[test]
+    fn few_points_tell_how_much_of_a_pixel_an_edge_covers() {
+        for (points, worst) in [(2, 0.195), (3, 0.158), (4, 0.097), (8, 0.065), (16, 0.035), (64, 0.0125)] {
+            let own = error(&(0..points).map(spread).collect::<Vec<_>>());
+            let r2 = error(&(0..points).map(r2).collect::<Vec<_>>());
+            println!("{points} points: {own:.4}, R2 {r2:.4}");
+            assert!(own <= worst && own < 0.95 * r2, "{points} points: {own}, R2 {r2}");
+        }
+        // All are places of their own.
+        let mut seen: Vec<_> = (0..256).map(|i| (spread(i) * 256.0).to_array().map(|x| x as u32)).collect();
+        seen.sort();
+        seen.dedup();
+        assert_eq!(seen.len(), 256);
     }
 
     /// Any run of 64 points leaves no hole of a quarter of the side, whatever the seed and start.

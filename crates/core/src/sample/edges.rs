@@ -1,14 +1,14 @@
 //! Additional samples where the tiles found edges: anti-aliasing where it is needed, nowhere else.
 //!
-//! Sample i of a pixel lies at its centre plus the i-th point of the R2 sequence (Roberts 2018),
-//! whose first point is the centre itself. Colours are averaged as c / (1 + max(c)), so that a
-//! bright light behind an edge doesn't swallow the edge (Karis 2014); the same for all presets.
+//! Sample i of a pixel lies at the i-th point of [`spread`], whose first is the pixel's centre. Edges of little
+//! contrast take half as many: what they are off by is seen as little. Colours are averaged as c / (1 + max(c)), so
+//! that a bright light behind an edge doesn't swallow the edge (Karis 2014); the same for all presets.
 
 use super::refine::Cell;
 use super::tile::{Kind, Record, TILE, Tile};
 use super::wave::{Position, Scratch, trace};
 use crate::counters::Counter;
-use crate::math::sampling::r2;
+use crate::math::sampling::spread;
 use crate::math::{Vec3, number};
 use crate::render::Stage;
 
@@ -17,7 +17,7 @@ const BATCH: usize = 1024;
 
 /// Position of sample `i` of the pixel at (x, y).
 fn place(x: usize, y: usize, i: u32) -> Position {
-    let offset = r2(i);
+    let offset = spread(i);
     (number(x) + offset.x, number(y) + offset.y)
 }
 
@@ -37,6 +37,8 @@ pub fn smooth_edges(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize)
     if edge == 0 {
         return;
     }
+    // By what is known of the pixel's edges.
+    let counts = [all, all.max(edge / 2), edge, edge];
     let width = TILE.min(stage.width as usize - corner.0);
     let height = TILE.min(stage.height as usize - corner.1);
     for side in stage.sides() {
@@ -46,7 +48,7 @@ pub fn smooth_edges(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize)
         pixels.clear();
         for y in 0..height {
             for x in 0..width {
-                let count = if tile.edges[y][x] { edge } else { all };
+                let count = counts[usize::from(tile.edges[y][x]) & 3];
                 if count > 0 && stage.side(corner.0 + x, corner.1 + y) == side {
                     pixels.push(Cell { x, y, size: count as usize });
                 }

@@ -13,7 +13,7 @@
 
 use super::block::{Sample, Samples};
 use super::interpolate::fill;
-use super::tile::{GRID, Kind, Record, TILE, Tile};
+use super::tile::{CLEAR, FAINT, GRID, Kind, Record, TILE, Tile};
 use super::wave::{Scratch, trace};
 use crate::counters::{Counter, Counters};
 use crate::cull::{Bounds, Region, may_cover, occluders};
@@ -106,7 +106,7 @@ struct Surroundings {
 #[cfg_attr(luc_size, optimize(size))]
 pub fn refine(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize), tile: &mut Tile) {
     let mut around = Surroundings { shapes: stage.candidates(corner, TILE), shadows: [u64::MAX; MAX_LAMPS] };
-    tile.edges = [[false; GRID]; GRID];
+    tile.edges = [[0; GRID]; GRID];
     for pass in stage.sides().start..2 + (features::SPLIT && stage.scene.split.is_some()) as usize {
         refine_side(stage, scratch, corner, pass, &mut around, tile);
     }
@@ -166,8 +166,9 @@ fn refine_side(
                 tile.nearness[cell.y * TILE + cell.x] = 1.0 / known.samples[0].depth();
                 scratch.counters.add(Counter::Traced, 1);
                 if known.is_edge(stage) {
+                    let edge = if known.agree_within(stage.quality.faint) { FAINT } else { CLEAR };
                     for (x, y) in (0..4).map(|i| cell.point(i)) {
-                        tile.edges[y][x] = true;
+                        tile.edges[y][x] |= edge;
                     }
                 }
             } else if !cell.lies(stage, corner, 1 - side)

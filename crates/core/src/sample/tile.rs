@@ -44,6 +44,10 @@ impl Record {
 /// Side of the grid of a tile's samples: one more than its pixels.
 pub const GRID: usize = TILE + 1;
 
+/// An edge of little contrast, and one of much: bits of what is known of a pixel's edges.
+pub const FAINT: u8 = 1;
+pub const CLEAR: u8 = 2;
+
 /// The finished linear light of a tile's pixels, row after row of [`TILE`].
 pub struct Tile {
     /// Red, green and blue planes.
@@ -53,8 +57,8 @@ pub struct Tile {
     /// One over the depth of each pixel's surface along the view axis, 0 where there is none; not kept
     /// where the scene has no use for it.
     pub nearness: [f32; TILE * TILE],
-    /// Which pixels lie on an edge, by row; the last of each row and column are the neighbours'.
-    pub edges: [[bool; GRID]; GRID],
+    /// Edges on which pixels lie, by row; the last of each row and column are the neighbours'.
+    pub edges: [[u8; GRID]; GRID],
     /// What sampling it took.
     pub counters: Counters,
     /// Rays left and right of the scene's line, if it has one, in the last pass.
@@ -69,7 +73,7 @@ impl Default for Tile {
             rgb: [[0.0; TILE * TILE]; 3],
             record: [Record(0); TILE * TILE],
             nearness: [0.0; TILE * TILE],
-            edges: [[false; GRID]; GRID],
+            edges: [[0; GRID]; GRID],
             counters: Counters::default(),
             rays: [0; 2],
             measured: [0.0; 2],
@@ -79,6 +83,8 @@ impl Default for Tile {
 
 /// Hands the edge pixels that tiles have found beyond their right and lower border on to the tiles
 /// there, `across` to a row.
+#[inline(never)]
+#[cfg_attr(luc_size, optimize(size))]
 pub fn share_edges(tiles: &mut [Tile], across: usize) {
     for i in 0..tiles.len() {
         for (right, below) in [(1, 0), (0, 1), (1, 1)] {

@@ -4,7 +4,7 @@ use crate::counters::Counter;
 use crate::features;
 use crate::math::Vec3;
 use crate::math::lanes::{Bound, F, V3, splat};
-use crate::math::sampling::r2;
+use crate::math::sampling::spread;
 use crate::scene::{LightKind, Material, Scene};
 use std::f32::consts::PI;
 
@@ -59,7 +59,7 @@ impl Lamp {
     /// for all places that are lit: steps of so few rays are finer to look at than their noise, and
     /// what runs smoothly can be interpolated.
     pub fn aside(&self, sample: u32) -> Vec3 {
-        let at = r2(sample) * 2.0 - 1.0;
+        let at = spread(sample) * 2.0 - 1.0;
         self.sides[0] * at.x + self.sides[1] * at.y
     }
 
