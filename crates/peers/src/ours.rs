@@ -1,7 +1,7 @@
 //! Our own tree, as the engine asks it: in packets of eight.
 
-use crate::Tracer;
 use crate::rays::{Kind, Rays};
+use crate::triangles::Tracer;
 use luc_core::counters::Counters;
 use luc_core::math::lanes::{F, TRUE, V3, splat};
 use luc_core::math::{Mat3, Vec3};

@@ -1,7 +1,7 @@
 //! Other crates, each asked as its documentation shows.
 
-use crate::Tracer;
 use crate::rays::{Kind, Rays};
+use crate::triangles::Tracer;
 use bvh::aabb::{Aabb, Bounded};
 use bvh::bounding_hierarchy::BHShape;
 use glam::Vec3A;

@@ -58,7 +58,7 @@ pub fn primary(side: usize) -> Rays {
 }
 
 /// A number from 0 to 1 (Wellons' lowbias32).
-fn unit(seed: u32) -> f32 {
+pub fn unit(seed: u32) -> f32 {
     let mut x = seed.wrapping_mul(0x9e37_79b9) ^ 0x5bd1_e995;
     x = (x ^ x >> 16).wrapping_mul(0x7feb_352d);
     x = (x ^ x >> 15).wrapping_mul(0x846c_a68b);

@@ -1,0 +1,135 @@
+//! Our march through a distance field beside crate fidget, which compiles the same field to machine code.
+//!
+//! The field is of twelve balls, blended smoothly by the quadratic smooth minimum. Both give its values at the
+//! same points, and whole pictures of it ([`crate::frames`]); what they give is compared before it is timed.
+
+use crate::frames::{self, Frame};
+use crate::rays::unit;
+use crate::turns::medians;
+use fidget::context::Tree;
+use fidget::jit::JitShape;
+use fidget::shape::EzShape;
+use luc_core::math::Vec3;
+use luc_core::math::lanes::{TRUE, V3, load};
+use luc_core::quality::Quality;
+use luc_core::scene::{Field, Material, Node, Scene};
+use luc_core::trace;
+
+/// Passes of timing.
+const PASSES: usize = 15;
+/// Points of which values are compared and timed, and how many are evaluated at once.
+const POINTS: usize = 1 << 14;
+const SLICE: usize = 512;
+/// Rounds over those points in one timing, so that it is long enough.
+const ROUNDS: usize = 20;
+/// Radius of the smooth joins.
+const BLEND: f32 = 0.15;
+
+/// Middles and radii of the balls.
+fn balls() -> Vec<(Vec3, f32)> {
+    let at = |i: u32, k: u32| (unit(4 * i + k) * 2.0 - 1.0) * 0.55;
+    (0..12).map(|i| (Vec3::new(at(i, 0), at(i, 1), at(i, 2)), 0.14 + 0.14 * unit(4 * i + 3))).collect()
+}
+
+fn ours() -> Field {
+    Field::new(balls().into_iter().map(|(c, r)| Node { blend: BLEND, ..Node::sphere(c, r) }).collect())
+}
+
+/// The same by fidget's own operations, joined in the same order.
+fn theirs() -> JitShape {
+    let (x, y, z) = Tree::axes();
+    let ball = |(c, r): (Vec3, f32)| {
+        let square = (x.clone() - c.x).square() + (y.clone() - c.y).square() + (z.clone() - c.z).square();
+        square.sqrt() - r
+    };
+    let join = |a: Tree, b: Tree| {
+        let h = (Tree::from(BLEND) - (a.clone() - b.clone()).abs()).max(0.0);
+        a.min(b) - h.square() * (0.25 / BLEND)
+    };
+    let tree = balls().into_iter().map(ball).reduce(join);
+    JitShape::from(tree.unwrap_or_else(|| Tree::from(1.0)))
+}
+
+/// Coordinates of points.
+type Points = [Vec<f32>; 3];
+
+fn our_values(field: &Field, [x, y, z]: &Points, out: &mut [f32]) {
+    let all = [TRUE; Field::MOST];
+    for (i, out) in out.chunks_exact_mut(8).enumerate() {
+        let p = V3::new(load(&x[8 * i..]), load(&y[8 * i..]), load(&z[8 * i..]));
+        out.copy_from_slice(trace::distance(field, p, &all, None).as_array());
+    }
+}
+
+/// What gives values by fidget, compiled once.
+fn their_values(shape: &JitShape) -> impl FnMut(&Points, &mut [f32]) {
+    let (tape, mut evaluator) = (shape.ez_float_slice_tape(), JitShape::new_float_slice_eval());
+    move |[x, y, z]: &Points, out: &mut [f32]| {
+        for (i, out) in out.chunks_mut(SLICE).enumerate() {
+            let part = i * SLICE..i * SLICE + out.len();
+            let values = evaluator.eval(&tape, &x[part.clone()], &y[part.clone()], &z[part]);
+            out.copy_from_slice(values.expect("slices of one length"));
+        }
+    }
+}
+
+/// Prints what the values differ by, and their times.
+fn values(field: &Field, shape: &JitShape) -> Result<(), String> {
+    let at = |k: u32| (0..POINTS as u32).map(|i| unit(3 * i + k) * 2.0 - 1.0).collect::<Vec<f32>>();
+    let points = [at(0), at(1), at(2)];
+    let mut theirs = their_values(shape);
+    let [mut a, mut b] = [vec![0.0; POINTS], vec![0.0; POINTS]];
+    our_values(field, &points, &mut a);
+    theirs(&points, &mut b);
+    let differ = a.iter().zip(&b).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+    if differ.is_nan() || differ > 1e-5 {
+        return Err(format!("fidget's values differ by up to {differ:.1e}"));
+    }
+    let mut works: Vec<Box<dyn FnMut()>> = vec![
+        Box::new(|| (0..ROUNDS).for_each(|_| our_values(field, &points, &mut a))),
+        Box::new(|| (0..ROUNDS).for_each(|_| theirs(&points, &mut b))),
+    ];
+    let times = medians(PASSES, &mut works);
+    let [ours, theirs] = [0, 1].map(|i| times[i] * 1e6 / (POINTS * ROUNDS) as f64);
+    let ratio = ours / theirs;
+    println!("| one value | {ours:.2} ns | {theirs:.2} ns | {ratio:.2} | values by up to {differ:.0e} |");
+    Ok(())
+}
+
+/// Prints what two pictures differ in, and their times.
+fn frame(name: &str, [ours, theirs]: [&Frame; 2], [a, b]: [f64; 2]) -> Result<(), String> {
+    let pixels = ours.depth.len();
+    let difference = ours.compare(theirs);
+    let (outline, depth) = (difference.outline, difference.depth);
+    if outline + depth > pixels / 200 {
+        return Err(format!("{name}: of {pixels} px {outline} in the outline and {depth} in depth differ"));
+    }
+    let angle = difference.angle;
+    println!(
+        "| {name} | {a:.2} ms | {b:.2} ms | {:.3} | outline in {outline} px, depth in {depth}, normals by {angle:.1}° |",
+        a / b
+    );
+    Ok(())
+}
+
+/// Prints the table.
+pub fn run(quick: bool) -> Result<(), String> {
+    let side = if quick { 128 } else { 512 };
+    let quality = Quality::named("high").ok_or("there is no quality high")?;
+    let (field, shape) = (ours(), theirs());
+    println!("| field of 12 balls | Lúč | fidget | ratio | what differs |");
+    println!("|---|---:|---:|---:|---|");
+    values(&field, &shape)?;
+    let materials = vec![Material::DEFAULT];
+    let scene = Scene { fields: vec![field.clone()], materials, ..Scene::default() };
+    let march = || frames::ours(&scene, &quality, side);
+    let voxels = || frames::voxels(&shape, side);
+    let rays = || frames::rays(&shape, &field, &quality, side);
+    let [a, b, c] = [march(), voxels(), rays()];
+    let mut works: Vec<Box<dyn FnMut()>> =
+        vec![Box::new(|| drop(march())), Box::new(|| drop(voxels())), Box::new(|| drop(rays()))];
+    let times = medians(PASSES, &mut works);
+    let size = format!("{side}x{side}");
+    frame(&format!("{size}, its voxels"), [&a, &b], [times[0], times[1]])?;
+    frame(&format!("{size}, its values along rays"), [&a, &c], [times[0], times[2]])
+}
