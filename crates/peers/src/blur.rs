@@ -1,9 +1,9 @@
 //! The blur of our bloom beside those of crates libblur and image.
 //!
-//! Ours is a binomial filter of seven taps along rows and columns, whose sigma is √1.5 px and no other; wider ones
-//! are several in a row. It is held, as are the others, against a Gaussian in f64 with nothing cut off, of which
-//! a picture's edges are repeated as all of them do it. Each keeps its picture as it likes best: ours one colour
-//! after the other in each row, theirs the colours of a pixel together.
+//! Ours is a binomial filter of seven taps along rows and columns, whose sigma is √1.5 px and no other; wider
+//! ones are several in a row. It is held, as are the others, against a Gaussian in f64 that reaches nine sigmas,
+//! for which a picture's edges are repeated as all of them do it. Each has its picture as it likes it best: ours
+//! one colour after the other in each row, theirs the colours of a pixel together.
 
 use crate::picture::Picture;
 use crate::rays::unit;
@@ -138,7 +138,7 @@ fn rows(size: [usize; 2], passes: usize) {
     }
 }
 
-/// Prints the table: the size at which bloom blurs a picture of 1920x1080, that picture itself, and a wider blur.
+/// Prints the table: the size at which bloom first blurs 1920x1080, that size itself, and a wider blur of it.
 pub fn run(quick: bool) {
     println!("| picture, sigma | blur | ms | greatest error | RMS |");
     println!("|---|---|---:|---:|---:|");

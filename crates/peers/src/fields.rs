@@ -1,7 +1,7 @@
 //! Our march through a distance field beside crate fidget, which compiles the same field to machine code.
 //!
-//! The field is of twelve balls, blended smoothly by the quadratic smooth minimum. Both give its values at the
-//! same points, and whole pictures of it ([`crate::frames`]); what they give is compared before it is timed.
+//! The field is of twelve balls of the show, blended by the quadratic smooth minimum. Both give its values at
+//! the same points, and whole pictures of it ([`crate::frames`]); these are compared before they are timed.
 
 use crate::frames::{self, Frame};
 use crate::rays::unit;
@@ -22,13 +22,32 @@ const POINTS: usize = 1 << 14;
 const SLICE: usize = 512;
 /// Rounds over those points in one timing, so that it is long enough.
 const ROUNDS: usize = 20;
-/// Radius of the smooth joins.
-const BLEND: f32 = 0.15;
+/// From the show's units to the picture's volume, -1 to 1 along each axis, and what moves up to its middle.
+const SCALE: f32 = 0.28;
+const MIDDLE: Vec3 = Vec3::new(0.0, 1.2, 0.4);
+/// Radius of the smooth joins, in the volume's units.
+const BLEND: f32 = 0.55 * SCALE;
 
-/// Middles and radii of the balls.
+/// Middles and radii of the balls: the mercury of the show's part Blobs, at rest. Five lobes, three drops that
+/// fall, four satellites that fly away.
 fn balls() -> Vec<(Vec3, f32)> {
-    let at = |i: u32, k: u32| (unit(4 * i + k) * 2.0 - 1.0) * 0.55;
-    (0..12).map(|i| (Vec3::new(at(i, 0), at(i, 1), at(i, 2)), 0.14 + 0.14 * unit(4 * i + 3))).collect()
+    let mut balls = vec![
+        (Vec3::new(0.25, -0.15, 0.4), 1.3),
+        (Vec3::new(-1.15, 0.42, 0.6), 0.74),
+        (Vec3::new(1.45, 0.35, 0.3), 0.66),
+        (Vec3::new(0.18, 1.25, 0.5), 0.5),
+        (Vec3::new(0.75, -1.05, 0.8), 0.6),
+    ];
+    for way in [0.0, 1.0 / 3.0, 2.0 / 3.0] {
+        balls.push((Vec3::new(0.27 - 0.05 * way, 4.2 - 2.9 * way * way, 0.45), 0.14 + 0.2 * way));
+    }
+    let away = [[-2.6, 0.85, 0.4], [2.5, 0.75, -0.1], [-2.0, -1.1, 0.5], [1.95, -1.1, 0.4]];
+    for (away, way) in away.into_iter().zip([0.0, 0.27, 0.54, 0.81]) {
+        let share = 1.0 - (1.0 - way) * (1.0 - way);
+        let at = Vec3::from(away) * (0.3 + 0.75 * share) + Vec3::new(0.1, 0.9 * way * (0.7 - way), 0.4);
+        balls.push((at, 0.32 * (1.0 - way * way)));
+    }
+    balls.into_iter().map(|(at, radius)| ((at - MIDDLE) * SCALE, radius * SCALE)).collect()
 }
 
 fn ours() -> Field {

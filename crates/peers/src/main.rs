@@ -5,6 +5,7 @@
 #![allow(clippy::disallowed_methods, reason = "input and figures, never pixels of the show")]
 
 mod blur;
+mod embree;
 mod fields;
 mod frames;
 mod ours;

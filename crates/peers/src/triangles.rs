@@ -5,7 +5,7 @@
 
 use crate::rays::{self, Kind, Rays};
 use crate::turns::medians;
-use crate::{knot, ours, peers};
+use crate::{embree, knot, ours, peers};
 use glam::Vec3A;
 
 /// A tracer that has built its tree.
@@ -35,8 +35,8 @@ impl Peer {
 const PASSES: usize = 9;
 const BUILDS: usize = 5;
 
-/// All tracers, ours first.
-fn all() -> Vec<Peer> {
+/// Ours, then those of other Rust crates.
+fn crates() -> Vec<Peer> {
     vec![
         Peer::new("Lúč", ours::build),
         Peer::new("obvhs, eight wide", peers::obvhs_wide),
@@ -117,7 +117,9 @@ fn ratio(title: &str, peers: &[Peer], rows: &[Row], chosen: impl Fn(&Peer) -> bo
 /// Prints the table.
 pub fn run(quick: bool) -> Result<(), String> {
     let (counts, side) = if quick { (&[10_000][..], 128) } else { (&[10_000, 100_000, 1_000_000][..], 512) };
-    let peers = all();
+    let embree = embree::peers()?;
+    let missing = embree.is_empty();
+    let peers: Vec<Peer> = crates().into_iter().chain(embree).collect();
     println!("| triangles | tracer | build, ms | primary | diffuse | shadow | other hits |");
     println!("|---:|---|---:|---:|---:|---:|---:|");
     for &count in counts {
@@ -132,7 +134,11 @@ pub fn run(quick: bool) -> Result<(), String> {
             size.clear();
         }
         ratio("ratio to crates", &peers, &rows, |peer| peer.rust);
-        ratio("ratio to Embree", &peers, &rows, |peer| !peer.rust);
+        ratio("ratio to Embree, single", &peers, &rows, |peer| !peer.rust && peer.name.contains("single"));
+        ratio("ratio to Embree, eights", &peers, &rows, |peer| !peer.rust && peer.name.contains("eights"));
+    }
+    if missing {
+        println!("\n{}", embree::MISSING);
     }
     Ok(())
 }
