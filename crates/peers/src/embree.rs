@@ -10,7 +10,7 @@
 mod layout;
 
 use crate::rays::{Kind, Rays};
-use crate::triangles::{Peer, Tracer};
+use crate::triangles::{Group, Peer, Tracer};
 use glam::Vec3A;
 use layout::{Arguments, Context, INVALID, Packet, VALID, arguments, context};
 use libloading::{Library, Symbol};
@@ -292,7 +292,7 @@ pub fn peers() -> Result<Vec<Peer>, String> {
         let device = device.clone();
         Peer {
             name: format!("{name}, {how}"),
-            rust: false,
+            group: if eights { Group::EmbreeEights } else { Group::EmbreeSingle },
             build: Box::new(move |triangles| Box::new(Tree::new(&device, triangles, eights))),
         }
     };

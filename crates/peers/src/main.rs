@@ -11,6 +11,8 @@ mod frames;
 mod ours;
 mod peers;
 mod rays;
+#[cfg(feature = "tinybvh")]
+mod tinybvh;
 mod triangles;
 mod turns;
 

@@ -20,14 +20,35 @@ pub type Build = Box<dyn Fn(&[[Vec3A; 3]]) -> Box<dyn Tracer>>;
 /// A tracer to be.
 pub struct Peer {
     pub name: String,
-    /// Whether it is a Rust crate, of which the best is what the first ratio is about.
-    pub rust: bool,
+    pub group: Group,
     pub build: Build,
 }
 
+/// What ours is held against: the best of each group.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Group {
+    /// In Rust.
+    Rust,
+    #[cfg_attr(not(feature = "tinybvh"), allow(dead_code, reason = "without that feature"))]
+    /// In C++, by a crate that compiles it.
+    Tinybvh,
+    /// A library that is here, asked ray by ray.
+    EmbreeSingle,
+    /// Asked in packets.
+    EmbreeEights,
+}
+
+/// The groups with what their rows of ratios say.
+const GROUPS: [(Group, &str); 4] = [
+    (Group::Rust, "over the best in Rust"),
+    (Group::Tinybvh, "over tinybvh"),
+    (Group::EmbreeSingle, "over Embree, single"),
+    (Group::EmbreeEights, "over Embree, eights"),
+];
+
 impl Peer {
-    fn new(name: &str, build: fn(&[[Vec3A; 3]]) -> Box<dyn Tracer>) -> Self {
-        Self { name: name.into(), rust: true, build: Box::new(build) }
+    fn new(name: &str, group: Group, build: fn(&[[Vec3A; 3]]) -> Box<dyn Tracer>) -> Self {
+        Self { name: name.into(), group, build: Box::new(build) }
     }
 }
 
@@ -37,13 +58,16 @@ const BUILDS: usize = 5;
 
 /// Ours, then those of other Rust crates.
 fn crates() -> Vec<Peer> {
-    vec![
-        Peer::new("Lúč", ours::build),
-        Peer::new("obvhs, eight wide", peers::obvhs_wide),
-        Peer::new("obvhs, binary", peers::obvhs_binary),
-        Peer::new("parry3d", peers::parry),
-        Peer::new("bvh", peers::bvh),
-    ]
+    let crates = [
+        Peer::new("Lúč", Group::Rust, ours::build),
+        Peer::new("obvhs, eight wide", Group::Rust, peers::obvhs_wide),
+        Peer::new("obvhs, binary", Group::Rust, peers::obvhs_binary),
+        Peer::new("parry3d", Group::Rust, peers::parry),
+        Peer::new("bvh", Group::Rust, peers::bvh),
+        #[cfg(feature = "tinybvh")]
+        Peer::new("tinybvh, eight wide", Group::Tinybvh, crate::tinybvh::build),
+    ];
+    crates.into()
 }
 
 /// The share of rays of which two tracers tell another hit; an error unless it is very small, as about edges
@@ -102,16 +126,23 @@ fn measure(peers: &[Peer], triangles: &[[Vec3A; 3]], side: usize) -> Result<Vec<
     Ok(rows)
 }
 
-/// Prints ours over the best of those that are chosen.
-fn ratio(title: &str, peers: &[Peer], rows: &[Row], chosen: impl Fn(&Peer) -> bool) {
-    let others = || peers.iter().zip(rows).skip(1).filter(|(peer, _)| chosen(peer)).map(|(_, row)| row);
-    if others().next().is_none() {
-        return;
+/// Prints ours over the best of each group that is here.
+fn ratios(peers: &[Peer], rows: &[Row]) {
+    for (group, title) in GROUPS {
+        let others = || peers.iter().zip(rows).skip(1).filter(|(peer, _)| peer.group == group);
+        if others().next().is_none() {
+            continue;
+        }
+        let build = rows[0].build / others().fold(f64::INFINITY, |best, (_, row)| best.min(row.build));
+        let best = |k: usize| others().fold(0.0, |best: f64, (_, row)| best.max(row.speed[k]));
+        let [a, b, c] = [0, 1, 2].map(|k| rows[0].speed[k] / best(k));
+        println!("| | **{title}** | {build:.2} | {a:.2} | {b:.2} | {c:.2} |");
     }
-    let build = rows[0].build / others().fold(f64::INFINITY, |best, row| best.min(row.build));
-    let [a, b, c] =
-        [0, 1, 2].map(|k| rows[0].speed[k] / others().fold(0.0, |best: f64, row| best.max(row.speed[k])));
-    println!("| | **{title}** | {build:.2} | {a:.2} | {b:.2} | {c:.2} | |");
+}
+
+/// A number with commas between its thousands.
+fn grouped(n: usize) -> String {
+    if n < 1000 { n.to_string() } else { format!("{},{:03}", grouped(n / 1000), n % 1000) }
 }
 
 /// Prints the table.
@@ -120,23 +151,24 @@ pub fn run(quick: bool) -> Result<(), String> {
     let embree = embree::peers()?;
     let missing = embree.is_empty();
     let peers: Vec<Peer> = crates().into_iter().chain(embree).collect();
-    println!("| triangles | tracer | build, ms | primary | diffuse | shadow | other hits |");
-    println!("|---:|---|---:|---:|---:|---:|---:|");
+    let mut differ = 0.0_f64;
+    println!("| triangles | tracer | build, ms | primary | diffuse | shadow |");
+    println!("|---:|---|---:|---:|---:|---:|");
     for &count in counts {
         let (triangles, _) = knot::knot(count);
         let triangles: Vec<[Vec3A; 3]> =
             triangles.iter().map(|t| t.map(|p| Vec3A::from_array(p.to_array()))).collect();
         let rows = measure(&peers, &triangles, side)?;
-        let mut size = triangles.len().to_string();
-        for (peer, Row { build, speed: [a, b, c], differ }) in peers.iter().zip(&rows) {
-            let name = &peer.name;
-            println!("| {size} | {name} | {build:.1} | {a:.1} | {b:.1} | {c:.1} | {differ:.0e} |");
+        let mut size = grouped(triangles.len());
+        for (peer, row) in peers.iter().zip(&rows) {
+            let (name, build, [a, b, c]) = (&peer.name, row.build, row.speed);
+            println!("| {size} | {name} | {build:.1} | {a:.1} | {b:.1} | {c:.1} |");
             size.clear();
+            differ = differ.max(row.differ);
         }
-        ratio("ratio to crates", &peers, &rows, |peer| peer.rust);
-        ratio("ratio to Embree, single", &peers, &rows, |peer| !peer.rust && peer.name.contains("single"));
-        ratio("ratio to Embree, eights", &peers, &rows, |peer| !peer.rust && peer.name.contains("eights"));
+        ratios(&peers, &rows);
     }
+    println!("\nMillions of rays a second. At most {differ:.0e} of the rays hit otherwise than ours.");
     if missing {
         println!("\n{}", embree::MISSING);
     }
