@@ -1,6 +1,6 @@
-//! `lab peers`: our tracer beside those of other crates, in a program of its own.
+//! `lab peers`: our tree, fields and blur beside those of other crates, in a program of its own.
 //!
-//! Its dependencies are other people's tracers, which nothing else here has to compile, so it stands
+//! Its dependencies are other people's work, which nothing else here has to compile, so it stands
 //! outside the workspace and is built when it is asked for.
 
 use std::path::Path;

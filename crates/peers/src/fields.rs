@@ -3,7 +3,7 @@
 //! The field is of twelve balls of the show, blended by the quadratic smooth minimum. Both give its values at
 //! the same points, and whole pictures of it ([`crate::frames`]); these are compared before they are timed.
 
-use crate::frames::{self, Frame};
+use crate::frames::{self, Difference};
 use crate::rays::unit;
 use crate::turns::medians;
 use fidget::context::Tree;
@@ -92,7 +92,13 @@ fn their_values(shape: &JitShape) -> impl FnMut(&Points, &mut [f32]) {
     }
 }
 
-/// Prints what the values differ by, and their times.
+/// Prints a row.
+fn row(name: &str, [ours, theirs]: [f64; 2], unit: &str, differs: &str) {
+    let ratio = ours / theirs;
+    println!("| {name} | {ours:.1} {unit} | {theirs:.1} {unit} | {ratio:.2} | {differs} |");
+}
+
+/// Prints what values differ by, and their times.
 fn values(field: &Field, shape: &JitShape) -> Result<(), String> {
     let at = |k: u32| (0..POINTS as u32).map(|i| unit(3 * i + k) * 2.0 - 1.0).collect::<Vec<f32>>();
     let points = [at(0), at(1), at(2)];
@@ -101,7 +107,7 @@ fn values(field: &Field, shape: &JitShape) -> Result<(), String> {
     our_values(field, &points, &mut a);
     theirs(&points, &mut b);
     let differ = a.iter().zip(&b).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
-    if differ.is_nan() || differ > 1e-5 {
+    if a.iter().chain(&b).any(|v| !v.is_finite()) || differ > 1e-5 {
         return Err(format!("fidget's values differ by up to {differ:.1e}"));
     }
     let mut works: Vec<Box<dyn FnMut()>> = vec![
@@ -109,46 +115,47 @@ fn values(field: &Field, shape: &JitShape) -> Result<(), String> {
         Box::new(|| (0..ROUNDS).for_each(|_| theirs(&points, &mut b))),
     ];
     let times = medians(PASSES, &mut works);
-    let [ours, theirs] = [0, 1].map(|i| times[i] * 1e6 / (POINTS * ROUNDS) as f64);
-    let ratio = ours / theirs;
-    println!("| one value | {ours:.2} ns | {theirs:.2} ns | {ratio:.2} | values by up to {differ:.0e} |");
+    let times = [0, 1].map(|i| times[i] * 1e6 / (POINTS * ROUNDS) as f64);
+    let differs = if differ == 0.0 { "nothing".into() } else { format!("values by up to {differ:.0e}") };
+    row("a value", times, "ns", &differs);
     Ok(())
 }
 
-/// Prints what two pictures differ in, and their times.
-fn frame(name: &str, [ours, theirs]: [&Frame; 2], [a, b]: [f64; 2]) -> Result<(), String> {
-    let pixels = ours.depth.len();
-    let difference = ours.compare(theirs);
-    let (outline, depth) = (difference.outline, difference.depth);
-    if outline + depth > pixels / 200 {
-        return Err(format!("{name}: of {pixels} px {outline} in the outline and {depth} in depth differ"));
+/// Prints what pictures differ in, and their times.
+fn pictures(field: &Field, shape: &JitShape, side: usize) -> Result<(), String> {
+    let quality = Quality::named("high").ok_or("there is no quality high")?;
+    let materials = vec![Material::DEFAULT];
+    let scene = Scene { fields: vec![field.clone()], materials, ..Scene::default() };
+    let march = || frames::ours(&scene, &quality, side);
+    let voxels = || frames::voxels(shape, side);
+    let rays = || frames::rays(shape, field, &quality, side);
+
+    let (pixels, ours) = (side * side, march());
+    let names = ["picture, by its renderer", "picture, by our steps with its values"];
+    let mut differs = Vec::new();
+    for (name, theirs) in names.iter().zip([voxels(), rays()]) {
+        let Difference { outline, depth, angle } = ours.compare(&theirs);
+        if outline + depth > pixels / 200 {
+            return Err(format!("fidget, {name}: {} of {pixels} px differ", outline + depth));
+        }
+        differs.push(format!("outline in {outline} px, depth in {depth}, normals by {angle:.1}°"));
     }
-    let angle = difference.angle;
-    println!(
-        "| {name} | {a:.2} ms | {b:.2} ms | {:.3} | outline in {outline} px, depth in {depth}, normals by {angle:.1}° |",
-        a / b
-    );
+
+    let mut works: Vec<Box<dyn FnMut()>> =
+        vec![Box::new(|| drop(march())), Box::new(|| drop(voxels())), Box::new(|| drop(rays()))];
+    let times = medians(PASSES, &mut works);
+    for ((name, theirs), differs) in names.iter().zip(&times[1..]).zip(&differs) {
+        row(name, [times[0], *theirs], "ms", differs);
+    }
     Ok(())
 }
 
 /// Prints the table.
 pub fn run(quick: bool) -> Result<(), String> {
     let side = if quick { 128 } else { 512 };
-    let quality = Quality::named("high").ok_or("there is no quality high")?;
     let (field, shape) = (ours(), theirs());
-    println!("| field of 12 balls | Lúč | fidget | ratio | what differs |");
+    println!("| 12 balls, {side}x{side} px | Lúč | fidget | ratio | what differs |");
     println!("|---|---:|---:|---:|---|");
     values(&field, &shape)?;
-    let materials = vec![Material::DEFAULT];
-    let scene = Scene { fields: vec![field.clone()], materials, ..Scene::default() };
-    let march = || frames::ours(&scene, &quality, side);
-    let voxels = || frames::voxels(&shape, side);
-    let rays = || frames::rays(&shape, &field, &quality, side);
-    let [a, b, c] = [march(), voxels(), rays()];
-    let mut works: Vec<Box<dyn FnMut()>> =
-        vec![Box::new(|| drop(march())), Box::new(|| drop(voxels())), Box::new(|| drop(rays()))];
-    let times = medians(PASSES, &mut works);
-    let size = format!("{side}x{side}");
-    frame(&format!("{size}, its voxels"), [&a, &b], [times[0], times[1]])?;
-    frame(&format!("{size}, its values along rays"), [&a, &c], [times[0], times[2]])
+    pictures(&field, &shape, side)
 }

@@ -161,8 +161,9 @@ pub fn run(quick: bool) -> Result<(), String> {
         let rows = measure(&peers, &triangles, side)?;
         let mut size = grouped(triangles.len());
         for (peer, row) in peers.iter().zip(&rows) {
-            let (name, build, [a, b, c]) = (&peer.name, row.build, row.speed);
-            println!("| {size} | {name} | {build:.1} | {a:.1} | {b:.1} | {c:.1} |");
+            let (name, [a, b, c]) = (&peer.name, row.speed);
+            let (build, digits) = (row.build, usize::from(row.build < 100.0));
+            println!("| {size} | {name} | {build:.digits$} | {a:.1} | {b:.1} | {c:.1} |");
             size.clear();
             differ = differ.max(row.differ);
         }

@@ -4,6 +4,7 @@
 use crate::rays::Rays;
 use glam::Vec3A;
 use std::ffi::c_void;
+use std::mem::offset_of;
 
 /// The id of no geometry.
 pub const INVALID: u32 = u32::MAX;
@@ -30,6 +31,11 @@ pub struct Fields<const N: usize> {
     pub geometry: [u32; N],
     instances: [[u32; N]; NESTED],
 }
+
+// A ray is twelve words, a hit begins after it, and its geometry is the hit's seventh word.
+const _: () = assert!(offset_of!(Fields<1>, far) == 32 && offset_of!(Fields<8>, far) == 8 * 32);
+const _: () = assert!(offset_of!(Fields<1>, normal) == 48 && offset_of!(Fields<8>, normal) == 8 * 48);
+const _: () = assert!(offset_of!(Fields<1>, geometry) == 72 && offset_of!(Fields<8>, geometry) == 8 * 72);
 
 /// Aligned as the widest packet here has to be.
 #[repr(C, align(32))]
