@@ -169,7 +169,11 @@ pub fn run(quick: bool) -> Result<(), String> {
         }
         ratios(&peers, &rows);
     }
-    println!("\nMillions of rays a second. At most {differ:.0e} of the rays hit otherwise than ours.");
+    let others = match differ {
+        0.0 => "no ray".into(),
+        _ => format!("at most one ray in {}", grouped((1.0 / differ) as usize)),
+    };
+    println!("\nMillions of rays a second; of each kind {others} hits otherwise than ours.");
     if missing {
         println!("\n{}", embree::MISSING);
     }
