@@ -56,7 +56,7 @@ const COMMANDS: [Command; 17] = [
     ("capture", "[-o FILE] [--shard I/N]", "frames as y4m, to a file or standard output", capture::run),
     ("stats", "[FRAME] [QUALITY] [WxH]", "counters, time and error of one frame", stats::run),
     ("sound", "[FILE.wav]...", "loudness, peaks and spectrum of the tune, beside those of files", sound::run),
-    ("peers", "[--quick]", "our tracer beside those of other crates, in one run", peers::run),
+    ("peers", "[--quick]", "our tree, fields and blur beside those of others, in one run", peers::run),
     ("memory", "PROGRAM [WxH]", "most memory that a player holds, by part", memory::run),
     ("lights", "", "culled against naive small lights", lights::run),
     (
