@@ -26,11 +26,9 @@ pub struct Quality {
     pub smallest: u32,
     /// What is interpolated.
     pub rung: Rung,
-    /// Additional samples of pixels on an edge.
+    /// Additional samples of each quadrant of a pixel that lies towards an edge.
     pub edge_samples: u32,
-    /// Contrast up to which an edge takes but half of them, in display units (1 is white); 0 for none.
-    pub faint: f32,
-    /// Additional samples of every pixel, on edges or not.
+    /// Additional samples of every pixel, on edges or not; then there are none for edges alone.
     pub samples: u32,
     /// Longest chain of mirrors and refractions.
     pub depth: u32,
@@ -73,7 +71,6 @@ impl Quality {
                 smallest: 2,
                 rung: Rung::Colour,
                 edge_samples: 0,
-                faint: 0.2,
                 samples: 0,
                 depth: 4,
                 scatter: 0,
@@ -97,7 +94,6 @@ impl Quality {
                 smallest: 1,
                 rung: Rung::Colour,
                 edge_samples: 0,
-                faint: 0.2,
                 samples: 0,
                 depth: 4,
                 scatter: 0,
@@ -120,8 +116,7 @@ impl Quality {
                 tolerance: 0.06,
                 smallest: 1,
                 rung: Rung::Surface,
-                edge_samples: 3,
-                faint: 0.3,
+                edge_samples: 1,
                 samples: 0,
                 depth: 5,
                 scatter: 0,
@@ -144,8 +139,7 @@ impl Quality {
                 tolerance: 0.02,
                 smallest: 1,
                 rung: Rung::Surface,
-                edge_samples: 3,
-                faint: 0.2,
+                edge_samples: 1,
                 samples: 0,
                 depth: 5,
                 scatter: 0,
@@ -168,8 +162,7 @@ impl Quality {
                 tolerance: 0.008,
                 smallest: 1,
                 rung: Rung::Surface,
-                edge_samples: 7,
-                faint: 0.1,
+                edge_samples: 2,
                 samples: 0,
                 depth: 7,
                 scatter: 4,
@@ -192,8 +185,7 @@ impl Quality {
                 tolerance: 0.0,
                 smallest: 1,
                 rung: Rung::Surface,
-                edge_samples: 15,
-                faint: 0.0,
+                edge_samples: 4,
                 samples: 15,
                 depth: 12,
                 scatter: 4,
@@ -269,7 +261,6 @@ mod tests {
                 down(|q| q.smallest as f32),
                 better.rung >= worse.rung,
                 up(|q| q.edge_samples as f32),
-                down(|q| q.faint),
                 up(|q| q.samples as f32),
                 up(|q| q.depth as f32),
                 up(|q| q.scatter as f32),

@@ -13,7 +13,7 @@
 
 use super::block::{Sample, Samples};
 use super::interpolate::fill;
-use super::tile::{CLEAR, FAINT, GRID, Kind, Record, TILE, Tile};
+use super::tile::{GRID, Kind, Record, TILE, Tile};
 use super::wave::{Scratch, trace};
 use crate::counters::{Counter, Counters};
 use crate::cull::{Bounds, Region, may_cover, occluders};
@@ -166,9 +166,10 @@ fn refine_side(
                 tile.nearness[cell.y * TILE + cell.x] = 1.0 / known.samples[0].depth();
                 scratch.counters.add(Counter::Traced, 1);
                 if known.is_edge(stage) {
-                    let edge = if known.agree_within(stage.quality.faint) { FAINT } else { CLEAR };
-                    for (x, y) in (0..4).map(|i| cell.point(i)) {
-                        tile.edges[y][x] |= edge;
+                    for i in 0..4 {
+                        let (x, y) = cell.point(i);
+                        // From a corner the cell lies in the opposite quadrant.
+                        tile.edges[y][x] |= 8 >> i;
                     }
                 }
             } else if !cell.lies(stage, corner, 1 - side)

@@ -44,10 +44,6 @@ impl Record {
 /// Side of the grid of a tile's samples: one more than its pixels.
 pub const GRID: usize = TILE + 1;
 
-/// An edge of little contrast, and one of much: bits of what is known of a pixel's edges.
-pub const FAINT: u8 = 1;
-pub const CLEAR: u8 = 2;
-
 /// The finished linear light of a tile's pixels, row after row of [`TILE`].
 pub struct Tile {
     /// Red, green and blue planes.
@@ -57,7 +53,8 @@ pub struct Tile {
     /// One over the depth of each pixel's surface along the view axis, 0 where there is none; not kept
     /// where the scene has no use for it.
     pub nearness: [f32; TILE * TILE],
-    /// Edges on which pixels lie, by row; the last of each row and column are the neighbours'.
+    /// In which quadrants of a pixel, a bit each in reading order, there is an edge; by row, of which the last, as the
+    /// last of each column, is the neighbour's.
     pub edges: [[u8; GRID]; GRID],
     /// What sampling it took.
     pub counters: Counters,

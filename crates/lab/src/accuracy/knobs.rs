@@ -111,22 +111,15 @@ fn sampling(b: &Quality) -> Vec<Knob> {
             |q, v| q.rung = v,
         ),
         turned(
-            ("edges", "Edge samples", "Additional samples of pixels that lie on an edge."),
-            &[0, 1, 3, 7, 15],
+            (
+                "edges",
+                "Edge samples",
+                "Additional samples of each quadrant of a pixel that lies towards an edge.",
+            ),
+            &[0, 1, 2, 4],
             px,
             b.edge_samples,
             |q, v| q.edge_samples = v,
-        ),
-        turned(
-            (
-                "faint",
-                "Faint edges",
-                "Contrast up to which an edge takes half of the additional samples, in display units.",
-            ),
-            &[0.0, 0.1, 0.2, 0.3, 1.0],
-            |v| format!("{v}"),
-            b.faint,
-            |q, v| q.faint = v,
         ),
         turned(
             ("samples", "Samples of every pixel", "Additional samples of every pixel, edge or not."),
