@@ -9,6 +9,7 @@ use crate::turns::medians;
 use fidget::context::Tree;
 use fidget::jit::JitShape;
 use fidget::shape::EzShape;
+use luc::show;
 use luc_core::math::Vec3;
 use luc_core::math::lanes::{TRUE, V3, load};
 use luc_core::quality::Quality;
@@ -25,48 +26,42 @@ const ROUNDS: usize = 20;
 /// From the show's units to the picture's volume, -1 to 1 along each axis, and what moves up to its middle.
 const SCALE: f32 = 0.28;
 const MIDDLE: Vec3 = Vec3::new(0.0, 1.2, 0.4);
-/// Radius of the smooth joins, in the volume's units.
-const BLEND: f32 = 0.55 * SCALE;
 
-/// Middles and radii of the balls: the mercury of the show's part Blobs, at rest. Five lobes, three drops that
-/// fall, four satellites that fly away.
-fn balls() -> Vec<(Vec3, f32)> {
-    let mut balls = vec![
-        (Vec3::new(0.25, -0.15, 0.4), 1.3),
-        (Vec3::new(-1.15, 0.42, 0.6), 0.74),
-        (Vec3::new(1.45, 0.35, 0.3), 0.66),
-        (Vec3::new(0.18, 1.25, 0.5), 0.5),
-        (Vec3::new(0.75, -1.05, 0.8), 0.6),
-    ];
-    for way in [0.0, 1.0 / 3.0, 2.0 / 3.0] {
-        balls.push((Vec3::new(0.27 - 0.05 * way, 4.2 - 2.9 * way * way, 0.45), 0.14 + 0.2 * way));
-    }
-    let away = [[-2.6, 0.85, 0.4], [2.5, 0.75, -0.1], [-2.0, -1.1, 0.5], [1.95, -1.1, 0.4]];
-    for (away, way) in away.into_iter().zip([0.0, 0.27, 0.54, 0.81]) {
-        let share = 1.0 - (1.0 - way) * (1.0 - way);
-        let at = Vec3::from(away) * (0.3 + 0.75 * share) + Vec3::new(0.1, 0.9 * way * (0.7 - way), 0.4);
-        balls.push((at, 0.32 * (1.0 - way * way)));
-    }
-    balls.into_iter().map(|(at, radius)| ((at - MIDDLE) * SCALE, radius * SCALE)).collect()
+/// The mercury of the show's part Blobs as it begins, in the volume's units: middles and radii of twelve balls, of
+/// which some fall and some fly away, and the radius of their smooth joins.
+struct Mercury {
+    balls: Vec<(Vec3, f32)>,
+    blend: f32,
 }
 
-fn ours() -> Field {
-    Field::new(balls().into_iter().map(|(c, r)| Node { blend: BLEND, ..Node::sphere(c, r) }).collect())
-}
+impl Mercury {
+    fn new() -> Result<Self, String> {
+        let part = show::PARTS.iter().find(|part| part.name == "blobs");
+        let field = part.and_then(|part| (part.scene)(0).fields.pop()).ok_or("there is no mercury")?;
+        let ball = |node: &Node| ((node.centre - MIDDLE) * SCALE, node.rounding * SCALE);
+        let blend = field.nodes.last().map_or(0.0, |node| node.blend * SCALE);
+        Ok(Self { balls: field.nodes.iter().map(ball).collect(), blend })
+    }
 
-/// The same by fidget's own operations, joined in the same order.
-fn theirs() -> JitShape {
-    let (x, y, z) = Tree::axes();
-    let ball = |(c, r): (Vec3, f32)| {
-        let square = (x.clone() - c.x).square() + (y.clone() - c.y).square() + (z.clone() - c.z).square();
-        square.sqrt() - r
-    };
-    let join = |a: Tree, b: Tree| {
-        let h = (Tree::from(BLEND) - (a.clone() - b.clone()).abs()).max(0.0);
-        a.min(b) - h.square() * (0.25 / BLEND)
-    };
-    let tree = balls().into_iter().map(ball).reduce(join);
-    JitShape::from(tree.unwrap_or_else(|| Tree::from(1.0)))
+    fn ours(&self) -> Field {
+        let node = |&(c, r): &(Vec3, f32)| Node { blend: self.blend, ..Node::sphere(c, r) };
+        Field::new(self.balls.iter().map(node).collect())
+    }
+
+    /// The same by fidget's own operations, joined in the same order.
+    fn theirs(&self) -> JitShape {
+        let (x, y, z) = Tree::axes();
+        let ball = |&(c, r): &(Vec3, f32)| {
+            let square = (x.clone() - c.x).square() + (y.clone() - c.y).square() + (z.clone() - c.z).square();
+            square.sqrt() - r
+        };
+        let join = |a: Tree, b: Tree| {
+            let h = (Tree::from(self.blend) - (a.clone() - b.clone()).abs()).max(0.0);
+            a.min(b) - h.square() * (0.25 / self.blend)
+        };
+        let tree = self.balls.iter().map(ball).reduce(join);
+        JitShape::from(tree.unwrap_or_else(|| Tree::from(1.0)))
+    }
 }
 
 /// Coordinates of points.
@@ -153,8 +148,9 @@ fn pictures(field: &Field, shape: &JitShape, side: usize) -> Result<(), String> 
 /// Prints the table.
 pub fn run(quick: bool) -> Result<(), String> {
     let side = if quick { 128 } else { 512 };
-    let (field, shape) = (ours(), theirs());
-    println!("| 12 balls, {side}x{side} px | Lúč | fidget | ratio | what differs |");
+    let mercury = Mercury::new()?;
+    let (field, shape) = (mercury.ours(), mercury.theirs());
+    println!("| {} balls, {side}x{side} px | Lúč | fidget | ratio | what differs |", mercury.balls.len());
     println!("|---|---:|---:|---:|---|");
     values(&field, &shape)?;
     pictures(&field, &shape, side)

@@ -17,7 +17,7 @@ use parry3d::shape::TriMesh;
 use std::time::Duration;
 
 /// Fills `out` ray by ray.
-fn each(rays: &Rays, out: &mut [f32], nearest: impl Fn(usize) -> f32, any: impl Fn(usize) -> bool) {
+pub fn each(rays: &Rays, out: &mut [f32], nearest: impl Fn(usize) -> f32, any: impl Fn(usize) -> bool) {
     for (i, out) in out.iter_mut().enumerate().take(rays.len()) {
         *out = match rays.kind {
             Kind::Shadow if any(i) => -1.0,

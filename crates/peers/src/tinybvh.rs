@@ -3,7 +3,8 @@
 //! The crate asks for nearest hits only, so shadow rays look for the nearest one before the lamp. Its
 //! `Ray::new` writes beyond the ray (version 0.1.0-beta.3, on x86-64), so rays are made of their fields.
 
-use crate::rays::{Kind, Rays};
+use crate::peers::each;
+use crate::rays::Rays;
 use crate::triangles::Tracer;
 use glam::Vec3A;
 use tinybvh_rs::{Intersection, Intersector, Ray, bvh, bvh8_cpu, mbvh};
@@ -30,7 +31,7 @@ pub fn build(triangles: &[[Vec3A; 3]]) -> Box<dyn Tracer> {
 
 impl Tracer for Tree {
     fn trace(&self, rays: &Rays, out: &mut [f32]) {
-        for (i, out) in out.iter_mut().enumerate().take(rays.len()) {
+        let nearest = |i: usize| {
             let (origin, dir) = (rays.origins[i], rays.directions[i]);
             let end = rays.ends[i].min(tinybvh_rs::INFINITE);
             let mut ray = Aligned(Ray {
@@ -43,11 +44,8 @@ impl Tracer for Tree {
             });
             self.0.intersect(&mut ray.0);
             let t = ray.0.hit.t;
-            *out = match rays.kind {
-                _ if t >= end => f32::INFINITY,
-                Kind::Shadow => -1.0,
-                _ => t,
-            };
-        }
+            if t < end { t } else { f32::INFINITY }
+        };
+        each(rays, out, nearest, |i| nearest(i).is_finite());
     }
 }

@@ -9,13 +9,15 @@ use glam::Vec2;
 /// The inverse powers of the plastic number, times 2³²: steps of the R2 sequence (Roberts 2018).
 const STEP: [u32; 2] = [0xc13f_a9a9, 0x91e1_0da5];
 
+/// Point `i` of the sequence that goes from the middle of the unit square by equal steps, round its borders.
+fn walk(i: u32, step: Vec2) -> Vec2 {
+    let at = 0.5 + i as f32 * step;
+    at - at.floor()
+}
+
 /// Point `i` of the R2 sequence that begins in the middle of the unit square.
 pub fn r2(i: u32) -> Vec2 {
-    let along = |step: f32| {
-        let x = 0.5 + i as f32 * step;
-        x - x.floor()
-    };
-    Vec2::new(along(0.754_877_7), along(0.569_840_3))
+    walk(i, Vec2::new(0.754_877_7, 0.569_840_3))
 }
 
 /// Point `i` of a few that stand for a unit square, from its middle on, 256 at most. Of all steps in
@@ -23,11 +25,7 @@ pub fn r2(i: u32) -> Vec2 {
 /// the error is 0.095 (root mean square over all edges that come near), with R2, whose first points lie to one
 /// side, 0.140.
 pub fn spread(i: u32) -> Vec2 {
-    let along = |step: f32| {
-        let x = 0.5 + i as f32 * step;
-        x - x.floor()
-    };
-    Vec2::new(along(209.0 / 256.0), along(79.0 / 256.0))
+    walk(i, Vec2::new(209.0, 79.0) / 256.0)
 }
 
 /// Point `i` in the unit square, without its upper borders, of each lane's own sequence: R2 moved

@@ -80,8 +80,6 @@ impl Default for Tile {
 
 /// Hands the edge pixels that tiles have found beyond their right and lower border on to the tiles
 /// there, `across` to a row.
-#[inline(never)]
-#[cfg_attr(luc_size, optimize(size))]
 pub fn share_edges(tiles: &mut [Tile], across: usize) {
     for i in 0..tiles.len() {
         for (right, below) in [(1, 0), (0, 1), (1, 1)] {

@@ -6,11 +6,12 @@
 //! - **Lost**: no crossing reported though the shape is crossed, ahead, and so it is shrunk by 4 δ.
 //! - **False**: a crossing reported though the shape grown by 4 δ is missed.
 //! - **Score** of a distance t: |t - ref| / max(unit, ulp(ref) / 2), where unit is how far ref moves
-//!   when the shape grows or shrinks by δ, or a quarter of that for 4 δ, where more. Where the ray misses
-//!   the shape by less than that, ref moves to the last crossing there is: over the skins it took, if over 1. A cone's slope and its tip are rounded apart, so the slope may
-//!   move alone, or against the tip: a ray along the side through the tip is within or without by their difference.
-//!   And the ray may move aside, alone or while the shape shrinks: near a tip, or where it grazes a side close
-//!   to an end, that moves ref as no growth does.
+//!   when the shape grows or shrinks by δ, or a quarter of that for 4 δ, where more. Where the ray misses the
+//!   shape by less than that, ref moves to the last crossing there is: over the skins it took, if over 1. A
+//!   cone's slope and its tip are rounded apart, so the slope may move alone, or against the tip: a ray along
+//!   the side through the tip is within or without by their difference. And the ray may move aside, alone or
+//!   while the shape shrinks: near a tip, or where it grazes a side close to an end, that moves ref as no
+//!   growth does.
 //!
 //! `{:?}` of an f32 reads back to the same bits, so a printed shape and ray replay a failure.
 

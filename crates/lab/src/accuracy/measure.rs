@@ -51,8 +51,8 @@ pub fn draw(renderer: &mut Renderer, subject: &Subject, n: u64, setting: &Settin
 pub fn truth_setting(truth: Truth, samples: u32) -> Setting {
     let [.., (_, reference)] = Quality::PRESETS;
     let (change, quality) = match truth {
-        Truth::Show => (Change::None, Quality { samples, edge_samples: samples, ..reference }),
-        Truth::Light => (FULL_LIGHT, Quality { samples, edge_samples: samples, ..reference }),
+        Truth::Show => (Change::None, Quality { samples, ..reference }),
+        Truth::Light => (FULL_LIGHT, Quality { samples, ..reference }),
         // So that errors are those of the motion alone.
         Truth::Smoke => (Change::Smoke(2.0, MANY), base()),
     };
