@@ -15,14 +15,14 @@
 
 use super::{EMPTY, LEAF_BIT, Node, Tree, range};
 use crate::counters::{Counter, Counters};
-use crate::math::lanes::{Bound, F, LANES, greatest, least, splat};
+use crate::math::lanes::{Bound, F, INFINITY, LANE_INDEX, greatest, least, splat, splat_u};
 use crate::trace::Rays8;
 
 /// Rays as intervals, along one axis.
 #[derive(Clone, Copy)]
 struct Axis {
-    /// Which of the planes lo and hi comes first.
-    near: usize,
+    /// Whether the plane hi comes first, not lo.
+    backward: bool,
     /// Origins that meet the near plane first, and the far plane last.
     origin: [F; 2],
     /// 1/d, of the smallest and of the greatest size.
@@ -38,9 +38,9 @@ impl Axis {
         let ((lo, hi), (small, big)) = (range(origin), range(inverse));
         let (lo, hi) = (lo - room, hi + room);
         match signs {
-            0 => Self { near: 0, origin: [hi, lo], inverse: [small, big] },
-            0xff => Self { near: 1, origin: [lo, hi], inverse: [big, small] },
-            _ => Self { near: 0, origin: [lo; 2], inverse: [splat(f32::NAN); 2] },
+            0 => Self { backward: false, origin: [hi, lo], inverse: [small, big] },
+            0xff => Self { backward: true, origin: [lo, hi], inverse: [big, small] },
+            _ => Self { backward: false, origin: [lo; 2], inverse: [splat(f32::NAN); 2] },
         }
     }
 }
@@ -48,15 +48,15 @@ impl Axis {
 impl Node {
     /// From which distance on each box may be met, and the mask of those met before `limit`.
     #[inline(always)]
-    fn test(&self, axes: &[Axis; 3], limit: F) -> (F, u32) {
+    fn test(&self, axes: &[Axis; 3], limit: F) -> (F, F) {
         let (mut enter, mut exit) = (F::ZERO, limit);
         for (i, axis) in axes.iter().enumerate() {
-            let near = self.bounds[2 * i + axis.near] - axis.origin[0];
-            let far = self.bounds[2 * i + 1 - axis.near] - axis.origin[1];
-            enter = (near * axis.inverse[0]).at_most(near * axis.inverse[1]).at_least(enter);
-            exit = (far * axis.inverse[0]).at_least(far * axis.inverse[1]).at_most(exit);
+            let near = self.bounds[2 * i + usize::from(axis.backward)] - axis.origin[0];
+            let far = self.bounds[2 * i + usize::from(!axis.backward)] - axis.origin[1];
+            enter = (near * axis.inverse[0]).at_least(enter);
+            exit = (far * axis.inverse[1]).at_most(exit);
         }
-        (enter, enter.simd_le(exit).to_bitmask())
+        (enter, enter.simd_le(exit))
     }
 }
 
@@ -75,28 +75,22 @@ impl Walker<'_> {
     fn visit(&mut self, node: usize) {
         self.counters.add(Counter::NodeVisits, 1);
         let node = &self.tree.nodes[node];
-        let (enter, mut met) = node.test(self.axes, splat(self.limit));
-        // The nearest first.
-        let mut queue = [(0, 0.0); LANES];
-        let mut len = 0;
-        while met != 0 {
-            let lane = met.trailing_zeros() as usize & 7;
-            met &= met - 1;
-            let entry = (node.child[lane], enter.as_array()[lane]);
-            if entry.0 == EMPTY {
-                continue;
-            }
-            let mut at = len;
-            len += 1;
-            while at > 0 && queue[at - 1].1 > entry.1 {
-                queue[at] = queue[at - 1];
-                at -= 1;
-            }
-            queue[at] = entry;
-        }
-        for &(child, from) in &queue[..len] {
-            if from > self.limit {
+        // What is infinitely far is not met: with a lane it would be NaN.
+        let limit = splat(self.limit).at_most(splat(f32::MAX));
+        let (enter, met) = node.test(self.axes, limit);
+        // The lane in the last bits tells equal distances apart.
+        let enter = F::from_bits(enter.to_bits() & splat_u(!7) | LANE_INDEX);
+        let mut ahead = met.select(enter, INFINITY);
+        loop {
+            let nearest = least(ahead);
+            let from = nearest.as_array()[0];
+            if from > self.limit || from == f32::INFINITY {
                 return;
+            }
+            ahead = ahead.simd_eq(nearest).select(INFINITY, ahead);
+            let child = node.child[from.to_bits() as usize & 7];
+            if child == EMPTY {
+                continue;
             }
             if child & LEAF_BIT != 0 {
                 self.limit = (self.leaf)(&self.tree.order[range(child)], self.counters);
@@ -109,7 +103,6 @@ impl Walker<'_> {
 
 impl Tree {
     /// How far boxes must be widened for `rays`, for what rounding may do to where these meet them.
-    #[inline(never)]
     pub fn room(&self, rays: &Rays8) -> f32 {
         let reach = self.bounds.lo.abs().max(self.bounds.hi.abs()).max_element();
         (greatest(rays.origin.max_abs()).as_array()[0] + reach) * (1.0 / 1_048_576.0)

@@ -141,26 +141,32 @@ pub fn copysign(magnitude: F, sign: F) -> F {
     (magnitude & !bit) | (sign & bit)
 }
 
-/// The greatest lane, in all lanes; lanes must not be NaN.
+/// What `both` makes of all lanes, in all lanes; it takes the greater of a pair, or the lesser.
 #[inline(always)]
-pub fn greatest(v: F) -> F {
+fn reduce(v: F, both: impl Fn(F, F) -> F) -> F {
     #[cfg(all(target_arch = "x86_64", target_feature = "avx"))]
     {
         use safe_arch::{m256, permute_m256, permute2z_m256};
+        let both = |a: m256, b: m256| both(F::from(a.0), F::from(b.0));
         let v = m256(v.into());
-        let both = |a: m256, b: m256| F::from(a.0).fast_max(F::from(b.0));
         let v = m256(both(v, permute2z_m256::<1>(v, v)).into());
         let v = m256(both(v, permute_m256::<0b01_00_11_10>(v)).into());
         both(v, permute_m256::<0b10_11_00_01>(v))
     }
     #[cfg(not(all(target_arch = "x86_64", target_feature = "avx")))]
-    F::splat(v.to_array().into_iter().fold(f32::NEG_INFINITY, |m, x| if x > m { x } else { m }))
+    v.to_array().into_iter().map(F::splat).reduce(both).unwrap_or(v)
+}
+
+/// The greatest lane, in all lanes; lanes must not be NaN.
+#[inline(always)]
+pub fn greatest(v: F) -> F {
+    reduce(v, F::fast_max)
 }
 
 /// The least lane, in all lanes; lanes must not be NaN.
 #[inline(always)]
 pub fn least(v: F) -> F {
-    -greatest(-v)
+    reduce(v, F::fast_min)
 }
 
 /// Four numbers, twice.

@@ -22,6 +22,8 @@ pub struct Instance {
     pub material: usize,
     /// Index of its first facet among those of the assembly.
     first: usize,
+    /// Half the surface of its mesh's box over the number of triangles, about, world.
+    pub(super) grain: f32,
 }
 
 /// All instances of a scene, and a tree over them.
@@ -58,7 +60,10 @@ impl Instance {
     #[cfg_attr(luc_size, optimize(size))]
     pub fn new(mesh: &Arc<Mesh>, world_from_mesh: Mat3, origin: Vec3, material: usize) -> Self {
         let mesh_from_world = world_from_mesh.inverse();
-        Self { mesh: mesh.clone(), origin, world_from_mesh, mesh_from_world, material, first: 0 }
+        let m = &world_from_mesh;
+        let scale = m.x_axis.length_squared().max(m.y_axis.length_squared()).max(m.z_axis.length_squared());
+        let grain = scale * mesh.tree.bounds.area() / number(mesh.triangles.len());
+        Self { mesh: mesh.clone(), origin, world_from_mesh, mesh_from_world, material, first: 0, grain }
     }
 
     /// The mesh.

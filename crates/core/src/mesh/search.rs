@@ -6,7 +6,7 @@
 //! ray and triangle, so the result is the same, and the same as that of testing everything: the nearest
 //! crossing, of equal ones that of the lower id.
 
-use super::{Assembly, Mesh, gather};
+use super::{Assembly, gather};
 use crate::bvh::Bounds;
 use crate::counters::{Counter, Counters};
 use crate::math::lanes::{Bound, F, INFINITY, LANES, V3, greatest, least, splat};
@@ -18,7 +18,7 @@ use std::cell::Cell;
 /// Directions that differ by more than this part of their greatest coordinate walk alone.
 const SPREAD: f32 = 0.25;
 
-/// Rays too that are so far apart in a mesh that their square is more than so many of its triangles.
+/// Rays too that are so far apart at a mesh that their square is more than so many of its triangles.
 const COARSE: f32 = 12.0;
 
 /// Greatest coordinate that rays may have.
@@ -49,19 +49,6 @@ fn keep(aim: &Aim, corners: &[V3; 3], id: F, any: bool, best: &mut Hits) {
     let t = if any { splat(-1.0) } else { crossing.t };
     best.t = closer.select(t, best.t);
     best.id = closer.select(id, best.id);
-}
-
-impl Mesh {
-    /// Whether rays in its space, as far apart as about its middle, mostly meet the same triangles.
-    #[inline(never)]
-    #[cfg_attr(luc_size, optimize(size))]
-    fn is_coarse_for(&self, rays: &Rays8) -> bool {
-        let bounds = self.tree.bounds;
-        let away =
-            (V3::splat((bounds.lo + bounds.hi) * 0.5) - rays.origin).max_abs() / rays.direction.max_abs();
-        let apart = spread(rays.origin) + spread(rays.direction) * away;
-        (apart * apart).simd_lt(splat(COARSE * bounds.area() / number(self.triangles.len()))).all()
-    }
 }
 
 impl Assembly {
@@ -131,6 +118,7 @@ impl Assembly {
     ) {
         let base = 4.0 * number(scene.shape_count());
         let single = lanes & (lanes - 1) == 0;
+        let apart = [rays.origin, rays.direction].map(spread);
         // Beyond which distance no hit counts any more.
         let limit = |best: &Hits| {
             if single { best.t.as_array()[lane_of(lanes)] } else { greatest(best.t).as_array()[0] }
@@ -150,7 +138,8 @@ impl Assembly {
             if rest == 0 {
                 return limit(best);
             }
-            let together = !single && mesh.is_coarse_for(&local);
+            let apart = apart[0] + apart[1] * least(enter);
+            let together = !single && (apart * apart).simd_lt(splat(COARSE * instance.grain)).all();
             while rest != 0 {
                 let lane = lane_of(rest);
                 let one = |v: F| splat(v.as_array()[lane]);
