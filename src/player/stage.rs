@@ -22,10 +22,10 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 /// Levels of live quality: a preset, and on how many twelfths of the picture's sides it draws. Each costs at
 /// most about twice as much as the one before it. A preset on fewer pixels shows more than the one under it on
 /// all, for less: see ARCHITECTURE.md.
-const LEVELS: [(usize, usize); 7] =
-    [(LOW, 4), (MEDIUM, 4), (MEDIUM, 6), (MEDIUM, 8), (MEDIUM, 12), (HIGH, 12), (ULTRA, 12)];
+const LEVELS: [(usize, usize); 8] =
+    [(LOW, 3), (LOW, 4), (MEDIUM, 4), (MEDIUM, 6), (MEDIUM, 8), (MEDIUM, 12), (HIGH, 12), (ULTRA, 12)];
 /// Where it starts.
-const MIDDLE: usize = 3;
+const MIDDLE: usize = 4;
 /// Presets; the one above the last is for measuring.
 const LOW: usize = 1;
 const MEDIUM: usize = 2;
@@ -201,7 +201,7 @@ mod tests {
     fn a_picture_on_fewer_pixels_keeps_its_shape() {
         let stage = Stage::new(&Options { size: (240, 120), ..options() }, (240, 120));
         let mut picture = Picture::default();
-        for (level, size) in [(1, (80, 40)), (2, (120, 60)), (3, (160, 80)), (4, (240, 120))] {
+        for (level, size) in [(0, (60, 30)), (1, (80, 40)), (3, (120, 60)), (4, (160, 80)), (5, (240, 120))] {
             stage.draw(&mut Renderer::default(), 0, LEVELS[level], &mut picture);
             assert_eq!((picture.size, picture.pixels.len()), (size, size.0 * size.1));
         }
