@@ -53,6 +53,7 @@ impl Node {
         for (i, axis) in axes.iter().enumerate() {
             let near = self.bounds[2 * i + usize::from(axis.backward)] - axis.origin[0];
             let far = self.bounds[2 * i + usize::from(!axis.backward)] - axis.origin[1];
+            // One end of 1/d does: what it gives wrongly for a plane behind the origins is below 0 either way.
             enter = (near * axis.inverse[0]).at_least(enter);
             exit = (far * axis.inverse[1]).at_most(exit);
         }

@@ -118,7 +118,7 @@ impl Assembly {
     ) {
         let base = 4.0 * number(scene.shape_count());
         let single = lanes & (lanes - 1) == 0;
-        let apart = [rays.origin, rays.direction].map(spread);
+        let spreads = [rays.origin, rays.direction].map(spread);
         // Beyond which distance no hit counts any more.
         let limit = |best: &Hits| {
             if single { best.t.as_array()[lane_of(lanes)] } else { greatest(best.t).as_array()[0] }
@@ -138,7 +138,7 @@ impl Assembly {
             if rest == 0 {
                 return limit(best);
             }
-            let apart = apart[0] + apart[1] * least(enter);
+            let apart = spreads[0] + spreads[1] * least(enter);
             let together = !single && (apart * apart).simd_lt(splat(COARSE * instance.grain)).all();
             while rest != 0 {
                 let lane = lane_of(rest);

@@ -206,6 +206,7 @@ pub fn field(rays: &Rays8, field: &Field, limit: F, quality: &Quality, counters:
         found |= arrived;
         active &= !arrived;
         (last_t, last) = (back.select(last_t, t), back.select(last, value));
+        // The newest slope weighs 0.4, which takes the fewest steps; none is longer than eight plain ones.
         plain += (splat(0.5) - here * splat(0.5) - plain) * splat(0.4);
         plain = back.select(F::ONE, plain.at_most(F::ONE).at_least(splat(0.125)));
         let mut step = last / plain;
