@@ -22,10 +22,11 @@ fn keep(figures: &Figures, _: &mut Vec<Beam>) -> (Camera, Grade) {
     (Camera::default(), Grade::DEFAULT)
 }
 
-/// The cathedral with the line at `x`, or without line, and without what blurs.
+/// The cathedral with the line at `x`, or without line, and without what blurs; at a frame whose errors by
+/// interpolation are well over the rounding to bytes.
 fn scene(x: Option<f32>) -> Scene {
     let part = show::PARTS.iter().find(|part| part.name == "cost").expect("a part of the show");
-    let mut scene = (part.scene)(100);
+    let mut scene = (part.scene)(600);
     scene.effects.clear();
     scene.grade.bloom = 0.0;
     scene.split = x.map(|x| Split { x, slant: 0.1, light: 1.0, titles: keep });

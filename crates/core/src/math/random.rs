@@ -1,5 +1,5 @@
 //! Hard cases by chance, for tests and studies: numbers of uniform exponent, and rays that graze, run along
-//! axes, or begin on the surface.
+//! axes, or begin on the surface. `LUC_SALT=n cargo test -p luc-core --lib` draws other cases in every law.
 
 use super::hash::{hash2, unit};
 use crate::math::Vec3;
@@ -10,6 +10,8 @@ pub struct Random(u32, u32);
 impl Random {
     /// The stream of this number.
     pub fn new(stream: u32) -> Self {
+        #[cfg(test)]
+        let stream = stream ^ salt() << 20;
         Self(0, stream)
     }
 
@@ -87,4 +89,15 @@ impl Random {
         let back = if self.one_in(8) { 0.0 } else { size * self.signed(-8, 14) };
         (target - direction.normalize_or(any) * back, direction)
     }
+}
+
+/// What sets a run's streams apart from the usual ones: `LUC_SALT`, 1..4096, else 0.
+#[cfg(test)]
+fn salt() -> u32 {
+    let given = std::env::var("LUC_SALT").unwrap_or_else(|_| "0".into());
+    given
+        .parse()
+        .ok()
+        .filter(|&salt| salt < 4096)
+        .unwrap_or_else(|| panic!("LUC_SALT={given} is not 0..4096"))
 }

@@ -18,7 +18,7 @@ struct Pyramid {
 }
 
 /// What rounding may do to the sign of a triple product, relative to its factors.
-const SMALL: f32 = 4e-6;
+const SMALL: f32 = 1e-6;
 
 impl Pyramid {
     /// Whether a triangle may reach into the pyramid, before the distances at its corners.
@@ -29,23 +29,26 @@ impl Pyramid {
     #[inline(never)]
     fn meets(&self, triangle: &[Vec3; 3]) -> bool {
         let p = triangle.map(|p| p - self.apex);
-        let reach = p[0].length() + p[1].length() + p[2].length();
+        let away = p.map(Vec3::length);
         let along = |n: Vec3| V3::splat(n).dot(self.corners);
         for i in 0..3 {
-            let n = cross(p[i], p[(i + 1) % 3]);
-            let third = n.dot(p[(i + 2) % 3]);
+            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+            let n = cross(p[i], p[j]);
+            let third = n.dot(p[k]);
             let n = if third < 0.0 { -n } else { n };
-            let size = n.length();
-            let clear = third.abs() > SMALL * size * reach;
+            // Of the factors, not of the product: that is nearly all rounding for an edge towards the apex.
+            let size = away[i] * away[j];
+            let clear = third.abs() > SMALL * size * away[k];
             if clear && along(n).simd_lt(-(self.small * splat(size))).all() {
                 return false;
             }
         }
-        let n = cross(p[1] - p[0], p[2] - p[0]);
+        let [a, b] = [p[1] - p[0], p[2] - p[0]];
+        let n = cross(a, b);
         let height = n.dot(p[0]);
         // 1 / distance of its plane along the corners.
         let inverse = along(n) / splat(height);
-        let near = height.abs() <= SMALL * n.length() * reach;
+        let near = height.abs() <= SMALL * a.length() * b.length() * (away[0] + away[1] + away[2]);
         near || !inverse.simd_le(self.inverse * splat(1.000_02)).all()
     }
 }

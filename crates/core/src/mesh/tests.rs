@@ -232,12 +232,18 @@ fn a_poisoned_ray_hits_nothing_at_nan_and_leaves_its_neighbours_alone() {
 
 #[test]
 fn what_lies_in_a_pyramid_is_found() {
-    let mut random = Random::new(313);
+    // In all but the first an apex lies on a triangle's edge.
+    for stream in [313, 12_601, 41_273] {
+        asks_about_pyramids(&mut Random::new(stream));
+    }
+}
+
+fn asks_about_pyramids(random: &mut Random) {
     let (mut cases, mut empty) = (0, 0);
     for case in 0..400 {
-        let scene = scene(&mut random, case);
+        let scene = scene(random, case);
         let meshes_only = Scene { spheres: vec![], ..scene.clone() };
-        let one = rays(&mut random, &scene);
+        let one = rays(random, &scene);
         for lane in 0..LANES {
             let (apex, d) = (one.origin.lane(lane), crate::math::normalize(one.direction.lane(lane)));
             let (u, v) = d.any_orthonormal_pair();

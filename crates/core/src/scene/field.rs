@@ -205,20 +205,28 @@ impl Field {
     pub fn new(nodes: Vec<Node>) -> Self {
         let (mut lo, mut hi) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
         let field = Self { nodes, ..Self::default() };
-        let blend = field.blend();
+        let growth = field.growth();
         for node in &field.nodes {
             let Some(half) = node.core() else { continue };
             let [x, y, z] = node.axes.unwrap_or_default().to_cols_array_2d().map(|c| Vec3::from(c).abs());
-            let half = x * half.x + y * half.y + z * half.z + node.rounding + blend + ROOM;
+            let half = x * half.x + y * half.y + z * half.z + node.rounding + growth + ROOM;
             lo = lo.min(node.centre - half);
             hi = hi.max(node.centre + half);
         }
         Self { lo, hi, ..field }
     }
 
-    /// Radius of its widest smooth join.
-    pub fn blend(&self) -> f32 {
-        self.nodes.iter().fold(0.0, |k: f32, n| k.max(n.blend))
+    /// How far at most it reaches beyond its bodies, world units: the radius of the widest smooth join, and what
+    /// swells add.
+    pub fn growth(&self) -> f32 {
+        let (mut widest, mut swells) = (0.0_f32, 0.0);
+        for node in &self.nodes {
+            widest = widest.max(node.blend);
+            if let Form::Swell { amplitude, .. } = node.form {
+                swells += amplitude;
+            }
+        }
+        widest + swells
     }
 
     /// How much the field's value may change per unit of distance, at most.

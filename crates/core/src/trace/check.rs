@@ -26,18 +26,9 @@ use glam::DVec3;
 /// Half an ulp of 1.
 pub const U: f64 = 1.0 / 16_777_216.0;
 
-/// Numbers of the streams that a law draws from: what one of them misses may be in the next. `LUC_STREAMS=A..B`
-/// draws from those instead, as many as wanted.
-fn streams(usual: u32) -> std::ops::Range<u32> {
-    let Ok(given) = std::env::var("LUC_STREAMS") else { return 0..usual };
-    let ends = given.split_once("..").map(|(a, b)| (a.parse(), b.parse()));
-    let Some((Ok(from), Ok(to))) = ends else { panic!("LUC_STREAMS={given} is no A..B") };
-    from..to
-}
-
-/// Calls `case` so many times with what draws each of the [`streams`]' numbers.
-pub fn sweep(usual: u32, seed: u32, each: u32, mut case: impl FnMut(&mut Random)) {
-    for stream in streams(usual) {
+/// Calls `case` so many times with each of so many streams: what one of them misses may be in the next.
+pub fn sweep(streams: u32, seed: u32, each: u32, mut case: impl FnMut(&mut Random)) {
+    for stream in 0..streams {
         let mut random = Random::new(1000 * stream + seed);
         (0..each).for_each(|_| case(&mut random));
     }

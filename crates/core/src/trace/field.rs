@@ -19,7 +19,7 @@ use crate::scene::{Field, Form, Join, Node};
 /// Per node: the mask of lanes that it matters to, or its share of each lane's surface.
 pub type Nodes = [F; Field::MOST];
 
-/// How far beyond a body smooth joins reach, in radii of the join: it is within a quarter of one
+/// How far beyond a body joins and swells reach, in their [`Field::growth`]: it is within a quarter of one
 /// where two join, and less than one where more do.
 pub const REACH: f32 = 1.25;
 
@@ -157,7 +157,7 @@ pub fn field(rays: &Rays8, field: &Field, limit: F, quality: &Quality, counters:
     }
     let mut near = [TRUE; Field::MOST];
     let (mut from, mut to) = (INFINITY, F::ZERO);
-    let blend = field.blend();
+    let beyond = REACH * field.growth();
     for (node, near) in field.nodes.iter().zip(&mut near) {
         if let Some(half) = node.core() {
             let f = o - V3::splat(node.centre);
@@ -165,7 +165,7 @@ pub fn field(rays: &Rays8, field: &Field, limit: F, quality: &Quality, counters:
             let off = f - d * middle;
             let away = f.length();
             let reach =
-                splat(half.length() + node.rounding + REACH * blend) + epsilon * splat(4.0) * (F::ONE + away);
+                splat(half.length() + node.rounding + beyond) + epsilon * splat(4.0) * (F::ONE + away);
             let left = reach * reach - off.dot(off);
             let half = left.at_least(F::ZERO).sqrt() / speed;
             *near = left.simd_gt(F::ZERO) & half.simd_gt(middle);

@@ -43,12 +43,12 @@ pub fn penumbra(
     let square = d.dot(d);
     let far = square.sqrt();
     let mut near: Nodes = [TRUE; Field::MOST];
-    let blend = field.blend();
+    let beyond = REACH * field.growth();
     for (node, near) in field.nodes.iter().zip(&mut near) {
         if let Some(half) = node.core() {
             let f = o - V3::splat(node.centre);
             let off = f - d * (f.dot(d) / square);
-            let reach = splat(half.length() + node.rounding + REACH * blend + radius);
+            let reach = splat(half.length() + node.rounding + beyond + radius);
             *near = off.dot(off).simd_lt(reach * reach);
         }
     }

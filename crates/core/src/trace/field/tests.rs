@@ -154,10 +154,16 @@ fn dense(field: &Field, o: Vec3, d: Vec3, step: f32, end: f32) -> Option<f32> {
 
 #[test]
 fn marching_finds_what_dense_stepping_finds() {
-    let mut random = Random::new(713);
+    // In all but the first a ray meets a swell outside of the body that it is on.
+    for stream in [713, 4_809, 8_905, 33_481] {
+        marching_against_dense_stepping(&mut Random::new(stream));
+    }
+}
+
+fn marching_against_dense_stepping(random: &mut Random) {
     let (mut hits, mut misses) = (0, 0);
     while hits < 800 || misses < 200 {
-        let field = any_field(&mut random);
+        let field = any_field(random);
         let o = random.direction() * random.range(0.0, 3.5);
         let d = (random.vector(-2, 1) - o).normalize_or(Vec3::X);
         let rays = packet(|| (o, d));
@@ -246,10 +252,16 @@ fn truth(node: &Node, p: DVec3) -> DVec3 {
 
 #[test]
 fn normals_are_those_of_f64_and_rays_get_away() {
-    let mut random = Random::new(715);
+    // In the second a ray leaves a rim, down along the side.
+    for stream in [715, 37_579] {
+        normals_and_rays_away(&mut Random::new(stream));
+    }
+}
+
+fn normals_and_rays_away(random: &mut Random) {
     let (mut seen, mut inner) = (0, 0);
     for case in 0..4_000 {
-        let (scene, node) = convex(&mut random, case % 4);
+        let (scene, node) = convex(random, case % 4);
         let counters = &mut Counters::default();
         let rays = packet(|| {
             let d = random.direction();
@@ -265,7 +277,6 @@ fn normals_are_those_of_f64_and_rays_get_away() {
         let out = Rays8 { origin: s.point + s.outward() * s.clearance, direction: away };
         let steep = up.abs().simd_gt(splat(0.07));
         let again = solid & steep & nearest(&scene, &HIGH, &out, u64::MAX, counters).id.simd_ge(F::ZERO);
-        assert!(!again.any(), "hits itself: {node:?} {:?} {:?}", rays.origin, rays.direction);
         let into = Rays8 { origin: s.point - s.outward() * s.clearance, direction: -s.outward() };
         let exit = nearest(&scene, &HIGH, &into, u64::MAX, counters);
         let far = surface(&scene, &HIGH, &into, exit.t, exit.id, F::ZERO);
@@ -276,6 +287,12 @@ fn normals_are_those_of_f64_and_rays_get_away() {
             let edge = matches!(node.form, Form::Round(_))
                 && (q.y.abs() - 0.6).abs() < 0.03
                 && DVec3::new(q.x, 0.0, q.z).length() > 0.37;
+            // Where the normal is the mean of two sides', what leaves is over both.
+            let sides = [DVec3::Y * q.y.signum(), DVec3::new(q.x, 0.0, q.z).normalize()];
+            let leaves = |side: DVec3| side.dot(away.lane(lane).as_dvec3()) > 0.07;
+            let mean = edge && sides.iter().all(|side| side.dot(n) < 0.9999);
+            let again = again.to_array()[lane].to_bits() != 0 && (!mean || sides.into_iter().all(leaves));
+            assert!(!again, "hits itself: {node:?} {:?} {:?} lane {lane}", rays.origin, rays.direction);
             let want = truth(&node, p);
             assert!(edge || n.dot(want) > 1.0 - 1e-4, "{node:?} at {p:?}: {n:?} not {want:?}");
             assert!(edge || at(&scene.fields[0], s.point.lane(lane)).abs() < 1e-5, "{node:?} at {p:?}");
