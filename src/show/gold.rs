@@ -6,8 +6,10 @@ use super::score;
 use super::still::{Lamp, Panel, Still};
 use luc_core::math::scalar::sin_cos;
 use luc_core::math::{Mat3, Vec3};
+use luc_core::mesh::{Assembly, Instance, Mesh};
 use luc_core::scene::*;
 use luc_core::synth::track::{Strikes, pulse, strikes};
+use std::sync::Arc;
 
 /// Strikes of kick and snare: the low sun beats with the one, the light spills over with the other.
 const KICK: [Strikes; 16] = strikes(&score::SCORE, &score::GOLD, score::KICK);
@@ -98,8 +100,10 @@ pub fn scene(frame: u64) -> Scene {
         bar(v(-2.15, 0.3, 0.1), v(-1.75, 2.95, -0.65), t / 9.0, 1),
         bar(v(1.95, 0.3, 0.85), v(2.7, 2.75, -0.35), -t / 11.0, 1),
     ];
-    s.triangles =
-        vec![Triangle { corners: [a, b, c], material: 2 }, Triangle { corners: [a, c, d], material: 3 }];
+    let half = |corners, material| {
+        Instance::new(&Arc::new(Mesh::flat(vec![corners])), Mat3::IDENTITY, Vec3::ZERO, material)
+    };
+    s.meshes = Assembly::new(vec![half([a, b, c], 2), half([a, c, d], 3)]);
     s.background.glows[0].colour *= 1.0 + 0.3 * pulse(&KICK, frame, 6.0);
     s.grade.bloom += 0.3 * pulse(&SNARE, frame, 8.0);
     s.overlay = track(&OVERLAY, t);

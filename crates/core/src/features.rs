@@ -6,6 +6,8 @@
 
 use crate::counters::Counter;
 
+/// Triangles that stand alone.
+pub const TRIANGLES: bool = cfg!(feature = "triangles");
 /// Trowbridge and Reitz's microfacets.
 pub const GGX: bool = cfg!(feature = "ggx");
 /// Relief from patterns.
@@ -89,7 +91,8 @@ pub const EFFECT_TUBE: bool = cfg!(feature = "effect-tube");
 pub const EFFECT_GRAIN: bool = cfg!(feature = "effect-grain");
 
 /// Each feature with the counter that shows it at work.
-pub const ALL: [(&str, Counter); 36] = [
+pub const ALL: [(&str, Counter); 37] = [
+    ("triangles", Counter::TriangleTests),
     ("ggx", Counter::Ggx),
     ("bumps", Counter::Bumps),
     ("fields", Counter::FieldSteps),

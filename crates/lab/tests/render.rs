@@ -97,8 +97,8 @@ fn bad_input_is_one_clear_line_and_code_2() {
         (&["render", "p.obj", "--normals", "odd"], "file, flat or smooth"),
         (&["render", "p.obj", "--up", "x"], "up is y or z"),
         (&["render", "p.obj", "--texture", "wood"], "a texture is none, noise"),
-        (&["mesh"], "which mesh? one of knot, facets"),
-        (&["mesh", "silver"], "a mesh is one of knot, facets"),
+        (&["mesh"], "which mesh? one of knot, gold"),
+        (&["mesh", "silver"], "a mesh is one of knot, gold"),
         (&["mesh", "luc"], "not 'luc'"),
     ] {
         let done = lab(folder, args);

@@ -50,13 +50,16 @@ impl Node {
     #[inline(always)]
     fn test(&self, axes: &[Axis; 3], limit: F) -> (F, F) {
         let (mut enter, mut exit) = (F::ZERO, limit);
-        for (i, axis) in axes.iter().enumerate() {
-            let near = self.bounds[2 * i + usize::from(axis.backward)] - axis.origin[0];
-            let far = self.bounds[2 * i + usize::from(!axis.backward)] - axis.origin[1];
+        let mut cut = |axis: &Axis, planes: &[F]| {
+            let near = planes[usize::from(axis.backward)] - axis.origin[0];
+            let far = planes[usize::from(!axis.backward)] - axis.origin[1];
             // One end of 1/d does: what it gives wrongly for a plane behind the origins is below 0 either way.
             enter = (near * axis.inverse[0]).at_least(enter);
             exit = (far * axis.inverse[1]).at_most(exit);
-        }
+        };
+        cut(&axes[0], &self.bounds[..2]);
+        cut(&axes[1], &self.bounds[2..4]);
+        cut(&axes[2], &self.bounds[4..]);
         (enter, enter.simd_le(exit))
     }
 }

@@ -7,6 +7,7 @@
 //! cell; for other shapes their least depth anywhere.
 
 use super::dop::nearest_in_cone;
+use crate::features;
 use crate::math::{Vec3, cross};
 use crate::render::Stage;
 use crate::trace::Shape;
@@ -20,7 +21,7 @@ pub fn may_cover(stage: &Stage, index: usize, centre: Vec2, half: Vec2, depths: 
     let deepest = depths.iter().fold(0.0_f32, |m, &d| m.max(d));
     match stage.scene.shape(index) {
         Shape::Sphere(s) => ball_may_cover(stage.view.local(s.centre), s.radius, centre, half, deepest),
-        Shape::Triangle(s) => {
+        Shape::Triangle(s) if features::TRIANGLES => {
             let [a, b, c] = s.corners.map(|p| stage.view.local(p));
             let n = cross(b - a, c - a);
             let height = n.dot(a);

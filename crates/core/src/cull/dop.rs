@@ -272,7 +272,6 @@ impl Dop {
     pub fn of(view: &View, shape: Shape) -> Dop {
         match shape {
             Shape::Sphere(s) => Dop::ball(view.local(s.centre), s.radius),
-            Shape::Plane(_) | Shape::Facet(..) => Dop::EVERYWHERE,
             Shape::Cylinder(s) if s.length < f32::INFINITY => {
                 let end = s.base + s.axis * s.length;
                 Dop::discs(view, s.axis, (s.base, s.radius), (end, s.radius))
@@ -284,7 +283,7 @@ impl Dop {
                 Dop::discs(view, s.axis, end(s.range[0]), end(s.range[1]))
             }
             Shape::Cone(_) => Dop::EVERYWHERE,
-            Shape::Triangle(s) => {
+            Shape::Triangle(s) if features::TRIANGLES => {
                 let corners = s.corners.map(|p| view.local(p));
                 let [a, b, c] = corners.map(|p| (p / p.z.max(NEAR)).truncate());
                 let edges = [b - a, c - b, a - c];
@@ -293,6 +292,7 @@ impl Dop {
                     .fold(Vec2::ZERO, |m, e| if e.length_squared() > m.length_squared() { e } else { m });
                 Dop::hull(Dop::with_edges(longest, [edges[0], edges[1]]), 3, &|i| corners[i])
             }
+            Shape::Plane(_) | Shape::Triangle(_) | Shape::Facet(..) => Dop::EVERYWHERE,
             Shape::Voxels(s) => Dop::aligned(view, s.bounds()),
             Shape::Field(s) => Dop::aligned(view, [s.lo, s.hi]),
         }

@@ -4,6 +4,7 @@
 //! A shape whose bound misses the bound of the points can't shadow any of them.
 
 use super::dop::{Dop, View, nearest_in_cone};
+use crate::features;
 use crate::math::{Vec3, cross};
 use crate::scene::{Field, Scene};
 use crate::shade::Lamp;
@@ -23,14 +24,14 @@ fn middle(shape: Shape, lamp: Vec3) -> Vec3 {
     match shape {
         Shape::Sphere(s) => s.centre,
         Shape::Plane(s) => s.point,
-        Shape::Facet(..) => Vec3::ZERO,
         Shape::Cylinder(s) if s.length < f32::INFINITY => s.base + s.axis * (s.length * 0.5),
         Shape::Cylinder(s) => s.base + s.axis * s.axis.dot(lamp - s.base),
         Shape::Cone(s) => {
             let end = if s.range[1] < f32::INFINITY { s.range[1] } else { s.range[0] + 1.0 };
             s.apex + s.axis * (0.5 * (s.range[0] + end))
         }
-        Shape::Triangle(s) => (s.corners[0] + s.corners[1] + s.corners[2]) / 3.0,
+        Shape::Triangle(s) if features::TRIANGLES => (s.corners[0] + s.corners[1] + s.corners[2]) / 3.0,
+        Shape::Triangle(_) | Shape::Facet(..) => Vec3::ZERO,
         Shape::Voxels(s) => (s.bounds()[0] + s.bounds()[1]) * 0.5,
         Shape::Field(s) => (s.lo + s.hi) * 0.5,
     }
@@ -93,7 +94,7 @@ impl Shaft {
         let Region { centre, radius, .. } = *region;
         let plane = match shape {
             Shape::Plane(p) => Some((p.point, p.normal)),
-            Shape::Triangle(t) => {
+            Shape::Triangle(t) if features::TRIANGLES => {
                 let [a, b, c] = t.corners;
                 Some((a, cross(b - a, c - a).normalize_or_zero()))
             }

@@ -94,7 +94,8 @@ impl Mesh {
 /// Points of up to eight triangles, one or more, lane by lane; lanes that are left have those of the first.
 #[inline(never)]
 fn gather(list: &[[Vec3; 3]], index: &[u32]) -> [V3; 3] {
-    let mut out = list[index[0] as usize].map(V3::splat);
+    let [a, b, c] = list[index[0] as usize];
+    let mut out = [V3::splat(a), V3::splat(b), V3::splat(c)];
     for (lane, &i) in index.iter().enumerate().skip(1) {
         for (points, &p) in out.iter_mut().zip(&list[i as usize]) {
             points.set_lane(lane, p);

@@ -3,7 +3,7 @@
 use super::{Mesh, gather};
 use crate::bvh::{Bounds, Tree};
 use crate::features;
-use crate::math::lanes::{F, V3, splat};
+use crate::math::lanes::{Bound, F, V3, splat};
 use crate::math::{Mat3, Vec3, number, whole};
 use crate::trace::{Aim, Crossing, Rays8, Span};
 use std::sync::Arc;
@@ -136,7 +136,9 @@ impl Instance {
             point: times(w, p) + V3::splat(self.origin),
             outward,
             normal,
-            reach: p.max_abs() * splat(4.0 * stretch) + splat(4.0 * self.origin.abs().max_element()),
+            // Rounding of the crossing is that of the corners, which may lie far to both sides.
+            reach: a.max_abs().at_least(b.max_abs()).at_least(c.max_abs()) * splat(4.0 * stretch)
+                + splat(4.0 * self.origin.abs().max_element()),
             uv: [weights[1], weights[2]],
         }
     }

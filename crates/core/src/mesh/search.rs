@@ -67,9 +67,17 @@ impl Assembly {
         best: &mut Hits,
         counters: &mut Counters,
     ) {
-        let asked =
-            wanted & rays.origin.max_abs().simd_lt(splat(FAR)) & rays.direction.max_abs().simd_lt(splat(FAR));
-        if self.is_empty() || !asked.any() {
+        if self.is_empty() {
+            return;
+        }
+        let Bounds { lo, hi } = self.tree.bounds;
+        let room = Vec3::splat(self.tree.room(rays));
+        let (enter, exit) = rays.in_box(lo - room, hi + room, best.t);
+        let asked = wanted
+            & enter.simd_le(exit)
+            & rays.origin.max_abs().simd_lt(splat(FAR))
+            & rays.direction.max_abs().simd_lt(splat(FAR));
+        if !asked.any() {
             return;
         }
         let mut found = Hits { t: asked.select(best.t, splat(-1.0)), id: best.id };
@@ -155,7 +163,8 @@ impl Assembly {
                     counters.add(Counter::FacetTests, items.len() * if together { LANES } else { 1 });
                     if together {
                         for &item in items {
-                            let corners = mesh.triangles[item as usize].map(V3::splat);
+                            let [a, b, c] = mesh.triangles[item as usize];
+                            let corners = [V3::splat(a), V3::splat(b), V3::splat(c)];
                             keep(&aim, &corners, splat(first + 4.0 * item as f32), any, &mut found);
                         }
                     } else {

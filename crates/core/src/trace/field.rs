@@ -3,7 +3,7 @@
 //! A ray goes on by the field's value over its Lipschitz constant, which can't pass the surface,
 //! until that is under an epsilon that grows with the distance; a secant then takes it closer. If the
 //! value fell less than it might have, the next step is longer, by the mean slope m 2 / (1 - m) times:
-//! what lies between has no surface as long as the free balls about both places meet, else the ray goes
+//! what lies between has no surface as long as the free balls about both places meet and neither is beyond it, else the ray goes
 //! back for the plain step (Bán and Valasek 2023, after Keinert 2014). Rays start and end at what holds
 //! the body: the field's box, and the balls around its bodies, grown by the radius of the smooth joins.
 //! A body whose grown ball a ray misses is left out for that ray, so a ray's result still depends on its
@@ -196,7 +196,7 @@ pub fn field(rays: &Rays8, field: &Field, limit: F, quality: &Quality, counters:
         }
         value *= sign * pace;
         let gone = (t - last_t) * speed;
-        let back = plain.simd_lt(F::ONE) & gone.simd_gt(last + value.abs());
+        let back = plain.simd_lt(F::ONE) & gone.simd_gt(last + value);
         let arrived = active & !back & value.simd_lt(epsilon * (F::ONE + t * speed));
         // The last step's slope carries it the rest of the way, if it has one.
         let here = (value - last) / gone;

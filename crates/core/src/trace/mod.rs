@@ -108,20 +108,19 @@ impl Rays8 {
     /// bounds only move where a comparison holds, so that 0 · inf = NaN, on a face, changes nothing.
     #[inline(never)]
     pub fn in_box(&self, lo: crate::math::Vec3, hi: crate::math::Vec3, end: F) -> (F, F) {
-        let (lo, hi) = (V3::splat(lo), V3::splat(hi));
         let (mut enter, mut exit) = (F::ZERO, end);
-        for (o, d, lo, hi) in [
-            (self.origin.x, self.direction.x, lo.x, hi.x),
-            (self.origin.y, self.direction.y, lo.y, hi.y),
-            (self.origin.z, self.direction.z, lo.z, hi.z),
-        ] {
+        let mut cut = |o: F, d: F, lo: f32, hi: f32| {
             let inv = F::ONE / d;
             let forward = inv.simd_gt(F::ZERO);
-            let (a, b) = ((lo - o) * inv, (hi - o) * inv);
+            let (a, b) = ((splat(lo) - o) * inv, (splat(hi) - o) * inv);
             let (near, far) = (forward.select(a, b), forward.select(b, a));
             enter = near.simd_gt(enter).select(near, enter);
             exit = exit.simd_gt(far).select(far, exit);
-        }
+        };
+        let Rays8 { origin: o, direction: d } = self;
+        cut(o.x, d.x, lo.x, hi.x);
+        cut(o.y, d.y, lo.y, hi.y);
+        cut(o.z, d.z, lo.z, hi.z);
         (enter, exit)
     }
 
@@ -171,10 +170,12 @@ impl Scene {
             return Shape::Cone(s);
         }
         i -= self.cones.len();
-        if let Some(s) = self.triangles.get(i) {
-            return Shape::Triangle(s);
+        if features::TRIANGLES {
+            if let Some(s) = self.triangles.get(i) {
+                return Shape::Triangle(s);
+            }
+            i -= self.triangles.len();
         }
-        i -= self.triangles.len();
         if features::VOXELS {
             if let Some(s) = self.voxels.get(i) {
                 return Shape::Voxels(s);
@@ -243,7 +244,8 @@ impl Shape<'_> {
             Shape::Plane(s) => plane(rays, s),
             Shape::Cylinder(s) => cylinder(rays, s),
             Shape::Cone(s) => cone(rays, s),
-            Shape::Triangle(s) => triangle(rays, s),
+            Shape::Triangle(s) if features::TRIANGLES => triangle(rays, s),
+            Shape::Triangle(_) => Span::MISS,
             Shape::Voxels(s) if features::VOXELS => voxels(rays, s, limit, counters),
             Shape::Voxels(_) => Span::MISS,
             Shape::Field(s) if features::FIELDS => field(rays, s, limit, quality, counters),

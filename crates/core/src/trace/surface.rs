@@ -122,13 +122,16 @@ fn locate(scene: &Scene, shape: Shape, part: u32, p: V3) -> Located {
             (p, n, blended(scene, s, p, n), c.max_abs() + r)
         }
         Shape::Plane(s) => onto_plane(p, s.point, V3::splat(s.normal)),
-        Shape::Triangle(s) => {
+        Shape::Triangle(s) if features::TRIANGLES => {
             let [a, b, c] = s.corners;
             let n = V3::splat(b - a).cross_exact(V3::splat(c - a));
-            onto_plane(p, a, n.normalize())
+            // Rounding of the crossing is that of the corners, which may lie far to both sides.
+            let reach = V3::splat(a.abs().max(b.abs()).max(c.abs())).max_abs();
+            let (point, n, normal, _) = onto_plane(p, a, n.normalize());
+            (point, n, normal, reach)
         }
         // Done with all facets of its instance at once.
-        Shape::Facet(..) => onto_plane(p, crate::math::Vec3::ZERO, p),
+        Shape::Triangle(_) | Shape::Facet(..) => onto_plane(p, crate::math::Vec3::ZERO, p),
         Shape::Cylinder(s) => round(p, s.base, s.axis, (s.radius, 0.0), [0.0, s.length], part),
         Shape::Cone(s) => round(p, s.apex, s.axis, (0.0, s.slope), s.range, part),
         Shape::Voxels(_) | Shape::Field(_) => onto_plane(p, crate::math::Vec3::ZERO, V3::ZERO),
@@ -285,6 +288,9 @@ fn mix(scene: &Scene, field: &Field, shares: &Nodes, mask: F, s: &mut Surface) {
     for (i, (node, &share)) in field.nodes.iter().zip(shares).enumerate() {
         if i > 0 && node.blend == 0.0 && node.join != Join::Sum {
             part += 1.0;
+        }
+        if share.simd_le(F::ZERO).all() {
+            continue;
         }
         for (lane, value) in sum.iter_mut().zip(scene.materials[node.material].channels()) {
             *lane += share * splat(value);

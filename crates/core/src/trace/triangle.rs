@@ -69,10 +69,12 @@ impl Aim {
     #[inline(never)]
     pub fn cross(&self, corners: &[V3; 3]) -> Option<Crossing> {
         let zero = F::ZERO;
-        let [a, b, c] = corners.map(|p| {
-            let p = self.turn(p - self.origin);
+        let [a, b, c] = corners;
+        let seen = |p: &V3| {
+            let p = self.turn(*p - self.origin);
             V3::new(p.x - self.shear_x * p.z, p.y - self.shear_y * p.z, p.z)
-        });
+        };
+        let (a, b, c) = (seen(a), seen(b), seen(c));
         // Rounding keeps the order of two products, so what is apart is apart exactly.
         let about = |p: V3, q: V3| q.x * p.y - q.y * p.x;
         let (u, v, w) = (about(b, c), about(c, a), about(a, b));
