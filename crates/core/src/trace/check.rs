@@ -184,7 +184,8 @@ impl Tally {
                 let mut unit_here = unit([1.0, 1.0, 0.0, 0.0]);
                 if score(unit_here) > 1.0 {
                     let against = (0..8).map(|i| [1.0 / f64::from(1 << i), -1.0, 0.0, 0.0]);
-                    let ways = against.chain(std::iter::once([0.0, 1.0, 0.0, 0.0])).chain(aside());
+                    let ways =
+                        against.chain(std::iter::once([0.0, 1.0, 0.0, 0.0])).chain(aside()).chain(ajar());
                     unit_here = ways.map(unit).fold(unit_here, f64::max);
                 }
                 if unit_here == f64::INFINITY {
@@ -207,6 +208,13 @@ fn aside() -> impl Iterator<Item = [f64; 4]> {
             let (sin, cos) = sin_cos(i as f32 * core::f32::consts::FRAC_PI_8);
             [grown, grown, cos.into(), sin.into()]
         })
+    })
+}
+
+/// Ways to move the ray aside while the slope changes, and the shape stays, grows or shrinks.
+fn ajar() -> impl Iterator<Item = [f64; 4]> {
+    aside().take(16).flat_map(|[_, _, x, y]| {
+        [-1.0, 1.0].into_iter().flat_map(move |slope| [-1.0, 0.0, 1.0].map(|grown| [grown, slope, x, y]))
     })
 }
 

@@ -149,14 +149,15 @@ mod tests {
                     let along = |k: usize| (at(pattern, p + Vec3::AXES[k] * h, n).0 - value) / h;
                     Vec3::from_array(std::array::from_fn(along))
                 };
-                let (after, before) = (difference(1.0 / 1024.0), difference(-1.0 / 1024.0));
-                let bend = (after - before).abs().max_element();
-                compared += (bend < 0.1) as u32;
-                let off = (gradient - (after + before) * 0.5).abs().max_element();
-                assert!(
-                    off < 0.05 + bend,
-                    "{name} at {p:?} n {n:?}: {gradient}, differences {before} {after}"
-                );
+                // Two creases may lie on either side of a ramp that is narrower than the wider differences.
+                let sides = [1024.0, 8192.0].map(|k: f32| (difference(1.0 / k), difference(-1.0 / k)));
+                let bend = |(after, before): (Vec3, Vec3)| (after - before).abs().max_element();
+                compared += (bend(sides[0]) < 0.1) as u32;
+                let fits = sides.map(|(after, before)| {
+                    let off = (gradient - (after + before) * 0.5).abs().max_element();
+                    off < 0.05 + bend((after, before))
+                });
+                assert!(fits[0] || fits[1], "{name} at {p:?} n {n:?}: {gradient}, differences {sides:?}");
             }
             println!("{name}: {low} to {high}, mean {}, {compared} compared", sum / 20_000.0);
             assert!(compared > 10_000, "{name}: {compared}");

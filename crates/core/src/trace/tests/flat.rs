@@ -173,6 +173,10 @@ fn scaling_by_a_power_of_two_gives_the_same_bits() {
     let mut random = Random::new(60);
     for _ in 0..20_000 {
         let p = [0; 3].map(|_| random.vector(-4, 4));
+        if crate::math::cross(p[1] - p[0], p[2] - p[0]) == Vec3::ZERO {
+            // Without an area all is rounding, some of it among the subnormal numbers, which don't scale.
+            continue;
+        }
         let n = random.direction();
         let rays = packet(|| random.ray(p[0] * 0.5 + p[1] * 0.25 + p[2] * 0.25, n, Vec3::X, 1.0));
         let k = two_to(random.bits() as i32 % 20);
