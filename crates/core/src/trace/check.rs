@@ -10,8 +10,8 @@
 //!   shape by less than that, ref moves to the last crossing there is: over the skins it took, if over 1. A
 //!   cone's slope and its tip are rounded apart, so the slope may move alone, or against the tip: a ray along
 //!   the side through the tip is within or without by their difference. And the ray may move aside, alone or
-//!   while the shape shrinks: near a tip, or where it grazes a side close to an end, that moves ref as no
-//!   growth does.
+//!   while the shape shrinks or its slope changes: near a tip, or where it grazes a side close to an end, that
+//!   moves ref as no growth does. Any part of a skin may be all that there is of it.
 //!
 //! `{:?}` of an f32 reads back to the same bits, so a printed shape and ray replay a failure.
 
@@ -184,9 +184,12 @@ impl Tally {
                 let mut unit_here = unit([1.0, 1.0, 0.0, 0.0]);
                 if score(unit_here) > 1.0 {
                     let against = (0..8).map(|i| [1.0 / f64::from(1 << i), -1.0, 0.0, 0.0]);
-                    let ways =
-                        against.chain(std::iter::once([0.0, 1.0, 0.0, 0.0])).chain(aside()).chain(ajar());
+                    let ways = against.chain(std::iter::once([0.0, 1.0, 0.0, 0.0])).chain(aside());
                     unit_here = ways.map(unit).fold(unit_here, f64::max);
+                }
+                // Hundreds of ways, so only where the others don't account for it.
+                if score(unit_here) > 4.0 {
+                    unit_here = ajar().map(unit).fold(unit_here, f64::max);
                 }
                 if unit_here == f64::INFINITY {
                     continue;
@@ -211,10 +214,13 @@ fn aside() -> impl Iterator<Item = [f64; 4]> {
     })
 }
 
-/// Ways to move the ray aside while the slope changes, and the shape stays, grows or shrinks.
+/// Ways to move the ray aside, by all of a skin or less, while the slope changes and the shape stays, grows or
+/// shrinks.
 fn ajar() -> impl Iterator<Item = [f64; 4]> {
-    aside().take(16).flat_map(|[_, _, x, y]| {
-        [-1.0, 1.0].into_iter().flat_map(move |slope| [-1.0, 0.0, 1.0].map(|grown| [grown, slope, x, y]))
+    let far = [1.0, 1.0 / 8.0, 1.0 / 64.0, 1.0 / 512.0];
+    let aside = aside().take(16).flat_map(move |[_, _, x, y]| far.map(|far| (far * x, far * y)));
+    aside.flat_map(|(x, y)| {
+        [-1.0, 0.0, 1.0].into_iter().flat_map(move |slope| [-1.0, 0.0, 1.0].map(|grown| [grown, slope, x, y]))
     })
 }
 
