@@ -15,6 +15,7 @@
 
 use super::{EMPTY, LEAF_BIT, Node, Tree, range};
 use crate::counters::{Counter, Counters};
+use crate::math::Vec3;
 use crate::math::lanes::{Bound, F, INFINITY, LANE_INDEX, greatest, least, splat, splat_u};
 use crate::trace::Rays8;
 
@@ -107,9 +108,17 @@ impl Walker<'_> {
 
 impl Tree {
     /// How far boxes must be widened for `rays`, for what rounding may do to where these meet them.
-    pub fn room(&self, rays: &Rays8) -> f32 {
+    fn room(&self, rays: &Rays8) -> f32 {
         let reach = self.bounds.lo.abs().max(self.bounds.hi.abs()).max_element();
         (greatest(rays.origin.max_abs()).as_array()[0] + reach) * (1.0 / 1_048_576.0)
+    }
+
+    /// Where each of `rays` enters and leaves the box around all, up to `end`: see [`Rays8::in_box`]. Outside
+    /// of that a ray meets nothing of the tree.
+    #[inline(always)]
+    pub fn span(&self, rays: &Rays8, end: F) -> (F, F) {
+        let room = Vec3::splat(self.room(rays));
+        rays.in_box(self.bounds.lo - room, self.bounds.hi + room, end)
     }
 
     /// Calls `leaf` with the leaves that one of `rays`, or a ray between them, may meet at a

@@ -7,10 +7,9 @@
 //! crossing, of equal ones that of the lower id.
 
 use super::{Assembly, gather};
-use crate::bvh::Bounds;
 use crate::counters::{Counter, Counters};
 use crate::math::lanes::{Bound, F, INFINITY, LANES, V3, greatest, least, splat};
-use crate::math::{Vec3, number, whole};
+use crate::math::{number, whole};
 use crate::scene::Scene;
 use crate::trace::{Aim, Hits, Rays8};
 use std::cell::Cell;
@@ -70,9 +69,7 @@ impl Assembly {
         if self.is_empty() {
             return;
         }
-        let Bounds { lo, hi } = self.tree.bounds;
-        let room = Vec3::splat(self.tree.room(rays));
-        let (enter, exit) = rays.in_box(lo - room, hi + room, best.t);
+        let (enter, exit) = self.tree.span(rays, best.t);
         let asked = wanted
             & enter.simd_le(exit)
             & rays.origin.max_abs().simd_lt(splat(FAR))
@@ -139,9 +136,7 @@ impl Assembly {
             let mesh = instance.mesh();
             let local = instance.local(rays);
             let [first, _] = instance.ids(base);
-            let Bounds { lo, hi } = mesh.tree.bounds;
-            let room = Vec3::splat(mesh.tree.room(&local));
-            let (enter, exit) = local.in_box(lo - room, hi + room, best.t);
+            let (enter, exit) = mesh.tree.span(&local, best.t);
             let mut rest = lanes & enter.simd_le(exit).to_bitmask();
             if rest == 0 {
                 return limit(best);

@@ -187,7 +187,7 @@ impl Tally {
                     let ways = against.chain(std::iter::once([0.0, 1.0, 0.0, 0.0])).chain(aside());
                     unit_here = ways.map(unit).fold(unit_here, f64::max);
                 }
-                // Hundreds of ways, so only where the others don't account for it.
+                // Hundreds of ways, so only where the others leave more than the gate of kernels in f32.
                 if score(unit_here) > 4.0 {
                     unit_here = ajar().map(unit).fold(unit_here, f64::max);
                 }

@@ -3,9 +3,10 @@
 //! A ray goes on by the field's value over its Lipschitz constant, which can't pass the surface,
 //! until that is under an epsilon that grows with the distance; a secant then takes it closer. If the
 //! value fell less than it might have, the next step is longer, by the mean slope m 2 / (1 - m) times:
-//! what lies between has no surface as long as the free balls about both places meet and neither is beyond it, else the ray goes
-//! back for the plain step (Bán and Valasek 2023, after Keinert 2014). Rays start and end at what holds
-//! the body: the field's box, and the balls around its bodies, grown by the radius of the smooth joins.
+//! what lies between has no surface as long as the free balls about both places meet and the second is not
+//! beyond it, else the ray goes back for the plain step (Bán and Valasek 2023, after Keinert 2014). Rays start
+//! and end at what holds the body: the field's box, and the balls around its bodies, grown by what smooth joins
+//! and swells add.
 //! A body whose grown ball a ray misses is left out for that ray, so a ray's result still depends on its
 //! own lane only. Normals and materials see all bodies.
 
