@@ -10,8 +10,9 @@
 //!   shape by less than that, ref moves to the last crossing there is: over the skins it took, if over 1. A
 //!   cone's slope and its tip are rounded apart, so the slope may move alone, or against the tip: a ray along
 //!   the side through the tip is within or without by their difference. And the ray may move aside, alone or
-//!   while the shape shrinks or its slope changes: near a tip, or where it grazes a side close to an end, that
-//!   moves ref as no growth does. Any part of a skin may be all that there is of it.
+//!   while the shape shrinks or its slope changes, or until it but touches the shape: near a tip, or where it
+//!   grazes a side close to an end, that moves ref as no growth does. Any part of a skin may be all that there
+//!   is of it.
 //!
 //! `{:?}` of an f32 reads back to the same bits, so a printed shape and ray replay a failure.
 
@@ -189,7 +190,13 @@ impl Tally {
                 }
                 // Hundreds of ways, so only where the others leave more than the gate of kernels in f32.
                 if score(unit_here) > 4.0 {
-                    unit_here = ajar().map(unit).fold(unit_here, f64::max);
+                    let touch = |[_, _, x, y]: [f64; 4]| {
+                        let grown = |share: f64| bent([1.0 - 2.0 * share, 0.0, x, y].map(|way| way * skin));
+                        let touching = if grown(1.0).is_none() { last(grown).0 } else { None };
+                        touching.map_or(0.0, |e| (e.t[k] - want).abs())
+                    };
+                    let touching = aside().take(16).map(touch);
+                    unit_here = ajar().map(unit).chain(touching).fold(unit_here, f64::max);
                 }
                 if unit_here == f64::INFINITY {
                     continue;
