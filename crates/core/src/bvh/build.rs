@@ -59,14 +59,26 @@ impl Tree {
         for (lane, part) in parts[..count].iter().enumerate() {
             let (nodes, child) = &mut subtrees[lane];
             let before = tree.nodes.len() as u32;
-            let moved = |child: u32| if child & LEAF_BIT == 0 { child + before } else { child };
+            let leaves = &mut tree.leaves;
+            let mut moved = |child: u32| {
+                if child == EMPTY {
+                    child
+                } else if child & LEAF_BIT == 0 {
+                    child + before
+                } else {
+                    let (from, last) = ((child & !LEAF_BIT) as usize / LEAF, child as usize % LEAF);
+                    let items = &order[from..=from + last];
+                    leaves.push(std::array::from_fn(|i| items[i.min(last)]));
+                    LEAF_BIT | ((leaves.len() - 1) * LEAF + last) as u32
+                }
+            };
             for child in nodes.iter_mut().flat_map(|node| &mut node.child) {
                 *child = moved(*child);
             }
-            tree.nodes[0].set(lane, part.bounds, moved(*child));
+            let child = moved(*child);
+            tree.nodes[0].set(lane, part.bounds, child);
             tree.nodes.append(nodes);
         }
-        tree.order = order;
         tree
     }
 }

@@ -18,14 +18,8 @@ pub const LEAF: usize = 4;
 /// Child of an unused lane.
 const EMPTY: u32 = u32::MAX;
 
-/// Flag of a child that is a leaf: `LEAF_BIT | from * LEAF + count - 1`, a range of the order.
+/// Flag of a child that is a leaf: `LEAF_BIT | index * LEAF + count - 1`.
 const LEAF_BIT: u32 = 1 << 31;
-
-/// The range that a child which is a leaf stands for.
-fn range(child: u32) -> std::ops::Range<usize> {
-    let from = (child & !LEAF_BIT) as usize / LEAF;
-    from..from + child as usize % LEAF + 1
-}
 
 /// An axis-parallel box.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,15 +71,15 @@ struct Node {
 #[derive(Clone, Debug)]
 pub struct Tree {
     nodes: Vec<Node>,
-    /// The items, leaf after leaf.
-    order: Vec<u32>,
+    /// Items of each leaf; the first of them again where there are fewer.
+    pub leaves: Vec<[u32; LANES]>,
     /// The box around everything.
     pub bounds: Bounds,
 }
 
 impl Default for Tree {
     fn default() -> Self {
-        Self { nodes: Vec::new(), order: Vec::new(), bounds: Bounds::NOTHING }
+        Self { nodes: Vec::new(), leaves: Vec::new(), bounds: Bounds::NOTHING }
     }
 }
 
@@ -129,7 +123,8 @@ impl Tree {
                     todo.push((child as usize, bounds));
                     continue;
                 }
-                for &item in self.order.get(range(child)).ok_or("a leaf without items")? {
+                let (leaf, last) = ((child & !LEAF_BIT) as usize / LEAF, child as usize % LEAF);
+                for &item in &self.leaves.get(leaf).ok_or("a leaf without items")?[..=last] {
                     *items.get_mut(item as usize).ok_or("an item that is none")? += 1;
                     if !inside(boxes[item as usize], bounds) {
                         return Err("an item that leaves its leaf's box");

@@ -13,13 +13,12 @@
 //! **NaN**, from 0 times infinity where a ray runs in a face, is the first operand of a
 //! minimum or maximum, which then gives the second: the axis sets no bound.
 
-use super::{EMPTY, LEAF_BIT, Node, Tree, range};
+use super::{EMPTY, LEAF, LEAF_BIT, Node, Tree};
 use crate::counters::{Counter, Counters};
-use crate::math::Vec3;
-use crate::math::lanes::{Bound, F, INFINITY, LANE_INDEX, greatest, least, splat, splat_u};
-use crate::trace::Rays8;
+use crate::math::lanes::{Bound, F, LANE_INDEX, LANES, greatest, least, splat, splat_u};
+use crate::trace::{Across, Rays8, Slabs};
 
-/// Rays as intervals, along one axis.
+/// One ray, or rays as intervals, along an axis.
 #[derive(Clone, Copy)]
 struct Axis {
     /// Whether the plane hi comes first, not lo.
@@ -31,17 +30,25 @@ struct Axis {
 }
 
 impl Axis {
+    /// The ray of the only lane in a mask; of more, all as a bundle.
     #[inline(never)]
-    fn new(origin: F, direction: F, room: F, single: bool) -> Self {
-        let signs = direction.to_bitmask() as u8;
-        let inverse = F::ONE / direction;
-        let range = |v: F| if single { (v, v) } else { (least(v), greatest(v)) };
-        let ((lo, hi), (small, big)) = (range(origin), range(inverse));
-        let (lo, hi) = (lo - room, hi + room);
-        match signs {
-            0 => Self { backward: false, origin: [hi, lo], inverse: [small, big] },
-            0xff => Self { backward: true, origin: [lo, hi], inverse: [big, small] },
-            _ => Self { backward: false, origin: [lo; 2], inverse: [splat(f32::NAN); 2] },
+    fn new(rays: &Across, lanes: u32) -> Axis {
+        let Across { lo, hi, inverse } = *rays;
+        let signs = inverse.to_bitmask();
+        let first = lanes.trailing_zeros() as usize % LANES;
+        let one = |v: F| splat(v.as_array()[first]);
+        let (lo, hi, mut small, mut big) = if lanes & (lanes - 1) == 0 {
+            (one(lo), one(hi), one(inverse), one(inverse))
+        } else {
+            (least(lo), greatest(hi), least(inverse), greatest(inverse))
+        };
+        if lanes & (lanes - 1) != 0 && signs != 0 && signs != 0xff {
+            (small, big) = (splat(f32::NAN), splat(f32::NAN));
+        }
+        if signs >> first & 1 != 0 {
+            Axis { backward: true, origin: [lo, hi], inverse: [big, small] }
+        } else {
+            Axis { backward: false, origin: [hi, lo], inverse: [small, big] }
         }
     }
 }
@@ -72,73 +79,78 @@ struct Walker<'a> {
     /// Distance up to which leaves are of interest.
     limit: f32,
     counters: &'a mut Counters,
-    leaf: &'a mut dyn FnMut(&[u32], &mut Counters) -> f32,
+    leaf: &'a mut dyn FnMut(usize, usize, &mut Counters) -> f32,
 }
 
 impl Walker<'_> {
     /// Visits a node, and then what of its children may be met before the limit: no deeper than 20 calls.
-    fn visit(&mut self, node: usize) {
-        self.counters.add(Counter::NodeVisits, 1);
-        let node = &self.tree.nodes[node];
-        // What is infinitely far is not met: with a lane it would be NaN.
-        let limit = splat(self.limit).at_most(splat(f32::MAX));
-        let (enter, met) = node.test(self.axes, limit);
-        // The lane in the last bits tells equal distances apart.
-        let enter = F::from_bits(enter.to_bits() & splat_u(!7) | LANE_INDEX);
-        let mut ahead = met.select(enter, INFINITY);
+    fn visit(&mut self, mut index: usize) {
         loop {
-            let nearest = least(ahead);
-            let from = nearest.as_array()[0];
-            if from > self.limit || from == f32::INFINITY {
-                return;
-            }
-            ahead = ahead.simd_eq(nearest).select(INFINITY, ahead);
-            let child = node.child[from.to_bits() as usize & 7];
-            if child == EMPTY {
-                continue;
-            }
-            if child & LEAF_BIT != 0 {
-                self.limit = (self.leaf)(&self.tree.order[range(child)], self.counters);
-            } else {
-                self.visit(child as usize);
+            self.counters.add(Counter::NodeVisits, 1);
+            let node = &self.tree.nodes[index];
+            // What is infinitely far is not met: with a lane it would be NaN.
+            let limit = splat(self.limit).at_most(splat(f32::MAX));
+            let (enter, met) = node.test(self.axes, limit);
+            // The lane in the last bits tells equal distances apart.
+            let enter = F::from_bits(enter.to_bits() & splat_u(!7) | LANE_INDEX);
+            let mut ahead = met.select(enter, splat(f32::INFINITY));
+            let mut lanes = met.to_bitmask();
+            loop {
+                if lanes == 0 {
+                    return;
+                }
+                let mut lane = lanes.trailing_zeros() as usize % LANES;
+                if lanes & (lanes - 1) != 0 {
+                    let nearest = least(ahead);
+                    ahead = ahead.simd_eq(nearest).select(splat(f32::INFINITY), ahead);
+                    lane = nearest.as_array()[0].to_bits() as usize % LANES;
+                }
+                lanes &= !(1 << lane);
+                if enter.as_array()[lane] > self.limit {
+                    return;
+                }
+                let child = node.child[lane];
+                if child == EMPTY {
+                    continue;
+                }
+                if child & LEAF_BIT != 0 {
+                    let (leaf, last) = ((child & !LEAF_BIT) as usize / LEAF, child as usize % LEAF);
+                    self.limit = (self.leaf)(leaf, last + 1, self.counters);
+                } else if lanes == 0 {
+                    index = child as usize;
+                    break;
+                } else {
+                    self.visit(child as usize);
+                }
             }
         }
     }
 }
 
 impl Tree {
-    /// How far boxes must be widened for `rays`, for what rounding may do to where these meet them.
-    fn room(&self, rays: &Rays8) -> f32 {
+    /// `rays` as the tree's boxes see them, widened for what rounding may do to where these are met.
+    #[inline(never)]
+    pub fn slabs(&self, rays: &Rays8) -> Slabs {
         let reach = self.bounds.lo.abs().max(self.bounds.hi.abs()).max_element();
-        (greatest(rays.origin.max_abs()).as_array()[0] + reach) * (1.0 / 1_048_576.0)
+        let room = (greatest(rays.origin.max_abs()) + splat(reach)) * splat(1.0 / 1_048_576.0);
+        Slabs::new(rays, room)
     }
 
-    /// Where each of `rays` enters and leaves the box around all, up to `end`: see [`Rays8::in_box`]. Outside
-    /// of that a ray meets nothing of the tree.
-    #[inline(always)]
-    pub fn span(&self, rays: &Rays8, end: F) -> (F, F) {
-        let room = Vec3::splat(self.room(rays));
-        rays.in_box(self.bounds.lo - room, self.bounds.hi + room, end)
-    }
-
-    /// Calls `leaf` with the leaves that one of `rays`, or a ray between them, may meet at a
-    /// distance up to `limit`: about the nearest first. It returns the new limit. Of a `single` ray, in all
-    /// lanes, no range is to be sought.
+    /// Calls `leaf` with the leaves, by index and number of items, that one of the rays, or a ray between them,
+    /// may meet at a distance up to `limit`: about the nearest first. It returns the new limit. If `lanes` is but
+    /// one, only the ray of that counts.
     #[inline(never)]
     pub fn walk(
         &self,
-        (rays, single): (&Rays8, bool),
+        (Slabs([x, y, z]), lanes): (&Slabs, u32),
         limit: f32,
         counters: &mut Counters,
-        leaf: &mut dyn FnMut(&[u32], &mut Counters) -> f32,
+        leaf: &mut dyn FnMut(usize, usize, &mut Counters) -> f32,
     ) {
         if self.is_empty() {
             return;
         }
-        let Rays8 { origin: o, direction: d } = rays;
-        let room = splat(self.room(rays));
-        let axis = |o: F, d: F| Axis::new(o, d, room, single);
-        let axes = [axis(o.x, d.x), axis(o.y, d.y), axis(o.z, d.z)];
+        let axes = [Axis::new(x, lanes), Axis::new(y, lanes), Axis::new(z, lanes)];
         Walker { tree: self, axes: &axes, limit, counters, leaf }.visit(0);
     }
 }

@@ -31,6 +31,8 @@ pub struct Mesh {
     /// Normals at the corners, for meshes that stand for something curved; else empty.
     normals: Vec<[Vec3; 3]>,
     tree: Tree,
+    /// The triangles of each leaf of the tree, side by side.
+    leaves: Vec<[V3; 3]>,
     #[cfg(feature = "images")]
     skin: Option<Skin>,
 }
@@ -46,8 +48,10 @@ impl Mesh {
     #[inline(never)]
     pub fn smooth(triangles: Vec<[Vec3; 3]>, normals: Vec<[Vec3; 3]>) -> Mesh {
         let boxes: Vec<Bounds> = triangles.iter().map(|t| Bounds::around(t)).collect();
+        let tree = Tree::build(&boxes, LEAF);
         Mesh {
-            tree: Tree::build(&boxes, LEAF),
+            leaves: tree.leaves.iter().map(|items| gather(&triangles, items)).collect(),
+            tree,
             triangles,
             normals,
             #[cfg(feature = "images")]

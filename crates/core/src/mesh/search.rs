@@ -6,12 +6,13 @@
 //! ray and triangle, so the result is the same, and the same as that of testing everything: the nearest
 //! crossing, of equal ones that of the lower id.
 
-use super::{Assembly, gather};
+use super::Assembly;
+use crate::bvh::Bounds;
 use crate::counters::{Counter, Counters};
-use crate::math::lanes::{Bound, F, INFINITY, LANES, V3, greatest, least, splat};
+use crate::math::lanes::{Bound, F, INFINITY, LANES, U, V3, greatest, least, splat};
 use crate::math::{number, whole};
 use crate::scene::Scene;
-use crate::trace::{Aim, Hits, Rays8};
+use crate::trace::{Aim, Hits, Rays8, Slabs};
 use std::cell::Cell;
 
 /// Directions that differ by more than this part of their greatest coordinate walk alone.
@@ -69,7 +70,8 @@ impl Assembly {
         if self.is_empty() {
             return;
         }
-        let (enter, exit) = self.tree.span(rays, best.t);
+        let Bounds { lo, hi } = self.tree.bounds;
+        let (enter, exit) = self.tree.slabs(rays).span(lo, hi, best.t);
         let asked = wanted
             & enter.simd_le(exit)
             & rays.origin.max_abs().simd_lt(splat(FAR))
@@ -94,12 +96,13 @@ impl Assembly {
                 origin: V3::select(open, rays.origin, first.origin),
                 direction: V3::select(open, rays.direction, first.direction),
             };
+            let spreads = (spread(bundle.origin), spread(bundle.direction));
             let near = greatest(bundle.direction.max_abs()) * splat(SPREAD);
-            let close = spread(bundle.direction).simd_lt(near).all();
+            let close = spreads.1.simd_lt(near).all();
+            let slabs = self.tree.slabs(&bundle);
             while todo != 0 {
-                let lowest = todo & todo.wrapping_neg();
-                let (rays, lanes) = if close { (bundle, todo) } else { (rays.alone(todo), lowest) };
-                self.walk(scene, (&rays, lanes), blockers.is_some(), &mut found, counters);
+                let lanes = if close { todo } else { todo & todo.wrapping_neg() };
+                self.walk(scene, (&bundle, &slabs, spreads), lanes, blockers.is_some(), &mut found, counters);
                 todo &= !lanes;
             }
         }
@@ -112,76 +115,78 @@ impl Assembly {
         best.id = asked.select(found.id, best.id);
     }
 
-    /// Does so for `rays` as one bundle, in lanes `lanes`; if that is one lane, for its ray in all of them.
+    /// Does so for the rays of `lanes`: as one bundle, if those are more than one.
     fn walk(
         &self,
         scene: &Scene,
-        (rays, lanes): (&Rays8, u32),
+        (rays, slabs, spreads): (&Rays8, &Slabs, (F, F)),
+        lanes: u32,
         any: bool,
         best: &mut Hits,
         counters: &mut Counters,
     ) {
         let base = 4.0 * number(scene.shape_count());
         let single = lanes & (lanes - 1) == 0;
-        let spreads = [rays.origin, rays.direction].map(spread);
         // Beyond which distance no hit counts any more.
         let limit = |best: &Hits| {
             if single { best.t.as_array()[lane_of(lanes)] } else { greatest(best.t).as_array()[0] }
         };
-        self.tree.walk((rays, single), limit(best), counters, &mut |items, counters| {
-            let instance = &self.instances[items[0] as usize];
+        self.tree.walk((slabs, lanes), limit(best), counters, &mut |leaf, _, counters| {
+            let instance = &self.instances[self.tree.leaves[leaf][0] as usize];
             if any && scene.materials[instance.material].is_transparent() {
                 return limit(best);
             }
             let mesh = instance.mesh();
             let local = instance.local(rays);
             let [first, _] = instance.ids(base);
-            let (enter, exit) = mesh.tree.span(&local, best.t);
+            let slabs = mesh.tree.slabs(&local);
+            let Bounds { lo, hi } = mesh.tree.bounds;
+            let (enter, exit) = slabs.span(lo, hi, best.t);
             let mut rest = lanes & enter.simd_le(exit).to_bitmask();
             if rest == 0 {
                 return limit(best);
             }
-            let apart = spreads[0] + spreads[1] * least(enter);
+            let apart = spreads.0 + spreads.1 * least(enter);
             let together = !single && (apart * apart).simd_lt(splat(COARSE * instance.grain)).all();
+            let all = Aim::new(&local);
             while rest != 0 {
                 let lane = lane_of(rest);
                 let one = |v: F| splat(v.as_array()[lane]);
-                let (ray, mut found) = if together {
-                    (local, *best)
+                let own;
+                let (aim, lanes, mut found) = if together {
+                    (&all, rest, *best)
                 } else {
-                    (local.alone(rest), Hits { t: one(best.t), id: one(best.id) })
+                    own = all.alone(lane);
+                    (&own, rest & rest.wrapping_neg(), Hits { t: one(best.t), id: one(best.id) })
                 };
-                let aim = Aim::new(&ray);
                 let reach =
                     |found: &Hits| if together { greatest(found.t) } else { least(found.t) }.as_array()[0];
-                mesh.tree.walk((&ray, !together), reach(&found), counters, &mut |items, counters| {
-                    counters.add(Counter::FacetTests, items.len() * if together { LANES } else { 1 });
+                mesh.tree.walk((&slabs, lanes), reach(&found), counters, &mut |leaf, count, counters| {
+                    counters.add(Counter::FacetTests, count * if together { LANES } else { 1 });
+                    let (corners, items) = (&mesh.leaves[leaf], &mesh.tree.leaves[leaf]);
                     if together {
-                        for &item in items {
-                            let [a, b, c] = mesh.triangles[item as usize];
-                            let corners = [V3::splat(a), V3::splat(b), V3::splat(c)];
-                            keep(&aim, &corners, splat(first + 4.0 * item as f32), any, &mut found);
+                        let [a, b, c] = corners;
+                        for (i, &item) in items[..count].iter().enumerate() {
+                            let one = |p: &V3| V3::splat(p.lane(i));
+                            let id = splat(first + 4.0 * item as f32);
+                            keep(aim, &[one(a), one(b), one(c)], id, any, &mut found);
                         }
                     } else {
-                        // All of the leaf at once; lanes that are left repeat its first.
-                        let mut id = splat(number(items[0] as usize));
-                        for (id, &item) in id.as_mut_array().iter_mut().zip(items) {
-                            *id = number(item as usize);
-                        }
-                        let id = splat(first) + id * splat(4.0);
-                        keep(&aim, &gather(&mesh.triangles, items), id, any, &mut found);
+                        // All of the leaf at once.
+                        let items = F::from_i32x8(U::new(*items).cast_signed());
+                        keep(aim, corners, splat(first) + items * splat(4.0), any, &mut found);
                     }
                     reach(&found)
                 });
+                rest &= !lanes;
                 if together {
                     *best = found;
-                    break;
+                } else {
+                    let nearest = least(found.t);
+                    best.t.as_mut_array()[lane] = nearest.as_array()[0];
+                    let id = found.t.simd_eq(nearest).select(found.id, INFINITY);
+                    best.id.as_mut_array()[lane] = least(id).as_array()[0];
                 }
-                let nearest = least(found.t);
-                best.t.as_mut_array()[lane] = nearest.as_array()[0];
-                let id = found.t.simd_eq(nearest).select(found.id, INFINITY);
-                best.id.as_mut_array()[lane] = least(id).as_array()[0];
-                rest &= rest - 1;
             }
             limit(best)
         });

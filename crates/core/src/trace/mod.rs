@@ -11,6 +11,7 @@ mod penumbra;
 mod plane;
 mod ramp;
 mod round;
+mod slabs;
 mod sphere;
 mod surface;
 mod texture;
@@ -30,6 +31,7 @@ pub use penumbra::penumbra;
 pub use plane::plane;
 pub use ramp::ramp;
 pub use round::{cone, cylinder};
+pub use slabs::{Across, Slabs};
 pub use sphere::sphere;
 pub use surface::{Surface, surface};
 pub use texture::relief_within;
@@ -99,29 +101,6 @@ impl Rays8 {
     pub fn alone(&self, lanes: u32) -> Rays8 {
         let one = |v: V3| V3::splat(v.lane(lanes.trailing_zeros() as usize));
         Rays8 { origin: one(self.origin), direction: one(self.direction) }
-    }
-
-    /// Distances at which the rays enter and leave a box, at least 0 and at most `end`; a miss has
-    /// them in the wrong order.
-    ///
-    /// The slab's near and far planes are chosen by the sign of 1/d, which knows -0 too, and the
-    /// bounds only move where a comparison holds, so that 0 · inf = NaN, on a face, changes nothing.
-    #[inline(never)]
-    pub fn in_box(&self, lo: crate::math::Vec3, hi: crate::math::Vec3, end: F) -> (F, F) {
-        let (mut enter, mut exit) = (F::ZERO, end);
-        let mut cut = |o: F, d: F, lo: f32, hi: f32| {
-            let inv = F::ONE / d;
-            let forward = inv.simd_gt(F::ZERO);
-            let (a, b) = ((splat(lo) - o) * inv, (splat(hi) - o) * inv);
-            let (near, far) = (forward.select(a, b), forward.select(b, a));
-            enter = near.simd_gt(enter).select(near, enter);
-            exit = exit.simd_gt(far).select(far, exit);
-        };
-        let Rays8 { origin: o, direction: d } = self;
-        cut(o.x, d.x, lo.x, hi.x);
-        cut(o.y, d.y, lo.y, hi.y);
-        cut(o.z, d.z, lo.z, hi.z);
-        (enter, exit)
     }
 
     /// Whether some ray's line comes near the ball: a cheap test before an expensive one, which

@@ -10,7 +10,7 @@
 //! All of it acts lane by lane: eight rays against one triangle, or one ray against eight.
 
 use super::{Rays8, Span};
-use crate::math::lanes::{Bound, F, ONE, V3, ZERO, difference_of_products};
+use crate::math::lanes::{Bound, F, LANES, ONE, V3, ZERO, difference_of_products, splat};
 use crate::scene::Triangle;
 
 /// Eight rays, turned and sheared.
@@ -57,6 +57,20 @@ impl Aim {
         let d = aim.turn(rays.direction);
         (aim.shear_x, aim.shear_y, aim.along) = (d.x / d.z, d.y / d.z, d.z);
         aim
+    }
+
+    /// What the ray of a lane needs, in all lanes.
+    #[inline(never)]
+    pub fn alone(&self, lane: usize) -> Self {
+        let one = |v: F| splat(v.as_array()[lane % LANES]);
+        Aim {
+            origin: V3::new(one(self.origin.x), one(self.origin.y), one(self.origin.z)),
+            by_z: one(self.by_z),
+            by_y: one(self.by_y),
+            shear_x: one(self.shear_x),
+            shear_y: one(self.shear_y),
+            along: one(self.along),
+        }
     }
 
     #[inline(always)]
