@@ -254,8 +254,9 @@ fn paint(before: u32, after: u32) -> Option<Kind> {
     }
 }
 
-/// Size of the pictures under the overlay: whole cells, whose pixels outside the picture would be counted too.
-const OVERLAID: (u32, u32) = (384, 216);
+/// Size of the pictures under the overlay: whole cells, whose pixels outside the picture would be counted
+/// too, and more lines than those of many meshes have that are traced pixel by pixel.
+const OVERLAID: (u32, u32) = (384, 368);
 
 #[test]
 fn the_overlay_shows_how_each_pixel_was_got() {
@@ -291,6 +292,23 @@ fn the_overlay_shows_how_each_pixel_was_got() {
             }
         }
     }
+}
+
+#[test]
+fn small_pictures_of_many_meshes_without_smoothed_edges_are_traced_pixel_by_pixel() {
+    let quality = preset("low");
+    let part = show::PARTS.iter().find(|part| part.name == "facets").expect("a part of meshes");
+    let scene = plain(part, 440);
+    let counters = |lines: u32, quality: &Quality| render(&scene, 440, (lines * 16 / 9, lines), quality).1;
+    assert_eq!(counters(360, &quality).get(Counter::Interpolated), 0, "360 lines");
+    for (lines, quality) in [(361, quality), (360, preset("medium"))] {
+        let counters = counters(lines, &quality);
+        assert!(counters.get(Counter::Interpolated) > 0, "{lines} lines, tolerance {}", quality.tolerance);
+    }
+    let gold = show::PARTS.iter().find(|part| part.name == "gold").expect("a part of two meshes");
+    assert!(render(&plain(gold, 440), 440, (640, 360), &quality).1.get(Counter::Interpolated) > 0, "gold");
+    let (pixels, _) = render(&scene, 440, (640, 360), &quality);
+    assert_eq!(pixels, render(&scene, 440, (640, 360), &quality.every_pixel()).0);
 }
 
 #[test]

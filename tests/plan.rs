@@ -29,6 +29,10 @@ fn check(renderer: &mut Renderer, steps: u32, name: &str, scene: &Scene, quality
         if PERHAPS.contains(&counter) && plan.names(counter) {
             continue;
         }
+        // Small pictures of many meshes have no cells.
+        if counter == Counter::Interpolated && plan.names(counter) && scene.meshes.instances().len() > 12 {
+            continue;
+        }
         // Steps that the renderer remembers aren't taken again.
         if counter == Counter::SmokeCells && scene.smoke.is_some_and(|smoke| smoke.steps == steps) {
             assert_eq!(count, 0, "{name}: {words}");

@@ -2,8 +2,8 @@
 //!
 //! A cell is interpolated if its corners and its centre have equal signatures, nothing else may
 //! appear in it, and the bilinear value at the centre is within tolerance in display units; else
-//! it is split in four, down to the pixel. Samples lie on pixels, so children share them. Among small
-//! facets no cell stays whole: a small one whose samples saw three surfaces is split into pixels at once.
+//! it is split in four, a cell of four into its pixels. Samples lie on pixels, so children share them.
+//! Small pictures of many meshes are traced pixel by pixel: hardly a cell stays whole among their facets.
 //! Whitted 1980's adaptive supersampling turned round; the centre sample is what makes it exact.
 //!
 //! *Nothing else may appear*: a shape whose projected bound meets the cell and that isn't behind
@@ -26,8 +26,10 @@ use crate::shade::MAX_LAMPS;
 use crate::trace::{BLOCKED, Shape};
 use glam::Vec2;
 
-/// Side of the largest cell that is split into pixels at once, px.
-const CROWD: usize = 8;
+/// Lines of a picture up to which the facets of many meshes are hardly larger than its pixels.
+const SMALL: u32 = 360;
+/// More meshes than this are many.
+const FEW: usize = 12;
 
 /// A square between samples; `x`, `y` from the tile's corner, px.
 #[derive(Clone, Copy)]
@@ -102,6 +104,13 @@ struct Surroundings {
     shadows: [u64; MAX_LAMPS],
 }
 
+/// Whether so many cells would be split to the pixel that tracing each, in packets of neighbours, is faster.
+fn is_too_fine(stage: &Stage) -> bool {
+    let quality = &stage.quality;
+    let plain = quality.edge_samples == 0 && quality.smallest == 1;
+    plain && stage.height <= SMALL && stage.scene.meshes.instances().len() > FEW
+}
+
 /// Samples the tile whose upper left pixel is `corner`, and fills its pixels.
 #[cfg_attr(luc_size, optimize(size))]
 pub fn refine(stage: &Stage, scratch: &mut Scratch, corner: (usize, usize), tile: &mut Tile) {
@@ -127,6 +136,7 @@ fn refine_side(
     let cell = match stage.quality.cell(stage.height) as usize {
         _ if pass != 1 => 1,
         cell if cell > 1 && stage.sides().len() == 2 => (cell * 4).min(32),
+        _ if is_too_fine(stage) => 1,
         cell => cell,
     };
     scratch.samples.0.clear();
@@ -179,8 +189,9 @@ fn refine_side(
             {
                 fill(stage, corner, cell, &known, tile, &mut scratch.counters);
             } else {
+                // A cell of two would take a sample for nearly each pixel that it might save.
                 let half = cell.size / 2;
-                let size = if known.is_crowded() { half.min(stage.quality.smallest as usize) } else { half };
+                let size = if half == 2 { half.min(stage.quality.smallest as usize) } else { half };
                 cell.split(size, stage, corner, side, &mut cells);
             }
         }
@@ -235,12 +246,6 @@ fn shadow_casters(stage: &Stage, samples: &Samples) -> [u64; MAX_LAMPS] {
 }
 
 impl Known<'_> {
-    /// Whether the samples of a small cell saw three surfaces or more.
-    fn is_crowded(&self) -> bool {
-        let [first, .., last] = self.samples.map(Sample::surface);
-        self.size <= CROWD && first != last && self.any(|s| s.surface() != first && s.surface() != last)
-    }
-
     /// Whether all samples agree with the first in a property.
     fn all(&self, like: impl Fn(Sample, Sample) -> bool) -> bool {
         self.samples[1..].iter().all(|&s| like(s, self.samples[0]))
