@@ -80,6 +80,9 @@ fn help() -> String {
 }
 
 fn main() {
+    // A reader that has seen enough, such as `head`, ends this as it ends other tools.
+    // SAFETY: no other thread runs yet, and no handler is replaced.
+    unsafe { libc::signal(libc::SIGPIPE, libc::SIG_DFL) };
     let args: Vec<String> = std::env::args().skip(1).collect();
     let name = args.first().map_or("", String::as_str);
     let result = match COMMANDS.iter().find(|command| command.0 == name) {

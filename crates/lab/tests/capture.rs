@@ -98,3 +98,12 @@ fn bad_input_is_one_clear_line_and_code_2() {
         assert_eq!(said.trim_end().lines().count(), 1, "{args:?}: {said}");
     }
 }
+
+#[test]
+fn a_reader_that_has_gone_ends_it_without_a_word() {
+    let (reader, writer) = std::io::pipe().unwrap();
+    drop(reader);
+    let mut lab = Command::new(env!("CARGO_BIN_EXE_luc-lab"));
+    let done = lab.arg("help").stdout(writer).output().unwrap();
+    assert_eq!(String::from_utf8_lossy(&done.stderr), "");
+}

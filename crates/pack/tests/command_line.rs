@@ -123,6 +123,16 @@ fn help_is_no_error() {
 }
 
 #[test]
+fn a_reader_that_has_gone_ends_it_without_a_word() {
+    for command in [env!("CARGO_BIN_EXE_luc-pack"), env!("CARGO_BIN_EXE_cargo-pack")] {
+        let (reader, writer) = std::io::pipe().unwrap();
+        drop(reader);
+        let done = Command::new(command).arg("--help").stdout(writer).output().unwrap();
+        assert_eq!(String::from_utf8_lossy(&done.stderr), "", "{command}");
+    }
+}
+
+#[test]
 fn cargo_pack_refuses_what_it_does_not_know() {
     let cases: [(&[&str], &str); 5] = [
         (&["--fast"], "--fast"),

@@ -38,6 +38,9 @@ fn run(quick: bool) -> Result<(), String> {
 }
 
 fn main() {
+    // A reader that has seen enough, such as `head`, ends this as it ends other tools.
+    // SAFETY: no other thread runs yet, and no handler is replaced.
+    unsafe { libc::signal(libc::SIGPIPE, libc::SIG_DFL) };
     let args: Vec<String> = std::env::args().skip(1).collect();
     let quick = args.iter().any(|a| a == "--quick");
     // Trees are built on one thread too.

@@ -15,7 +15,7 @@ use luc_core::quality::Quality;
 use luc_core::render::Renderer;
 use shard::Shard;
 use std::fs::{File, OpenOptions, rename};
-use std::io::{ErrorKind, Read, Seek, SeekFrom, Write, stdout};
+use std::io::{Read, Seek, SeekFrom, Write, stdout};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -130,17 +130,13 @@ impl Capture {
         to.flush()
     }
 
-    /// All frames to standard output; a reader that has seen enough ends it.
+    /// All frames to standard output.
     fn stream(&self) -> Result<(), String> {
         let mut out = stdout().lock();
         let mut progress = Progress::new((self.frames.end - self.frames.start) as f64);
-        let written = out
-            .write_all(&self.header())
-            .and_then(|()| self.write(self.frames.clone(), &mut out, &mut progress));
-        match written {
-            Err(e) if e.kind() != ErrorKind::BrokenPipe => Err(format!("standard output: {e}")),
-            _ => Ok(()),
-        }
+        out.write_all(&self.header())
+            .and_then(|()| self.write(self.frames.clone(), &mut out, &mut progress))
+            .map_err(|e| format!("standard output: {e}"))
     }
 
     /// All frames to a file, after those that it holds already.

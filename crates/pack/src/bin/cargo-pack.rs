@@ -44,6 +44,9 @@ struct Arguments {
 }
 
 fn main() -> ExitCode {
+    // A reader that has seen enough, such as `head`, ends this as it ends other tools.
+    // SAFETY: no other thread runs yet, and no handler is replaced.
+    unsafe { libc::signal(libc::SIGPIPE, libc::SIG_DFL) };
     if let Some(result) = tool() {
         return match result {
             Ok(code) => ExitCode::from(code as u8),

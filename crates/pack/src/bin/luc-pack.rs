@@ -38,6 +38,9 @@ enum Task {
 }
 
 fn main() -> ExitCode {
+    // A reader that has seen enough, such as `head`, ends this as it ends other tools.
+    // SAFETY: no other thread runs yet, and no handler is replaced.
+    unsafe { libc::signal(libc::SIGPIPE, libc::SIG_DFL) };
     let task = match task() {
         Ok(Some(task)) => task,
         Ok(None) => {
