@@ -6,9 +6,10 @@
 //! this is the slab test. Rays that run together cost one test of eight boxes in place of eight.
 //! What lies between the rays is covered too: so a cell of the picture asks what may show in it.
 //!
-//! **Rounding.** Origins are widened by 16 u of the greatest coordinate involved. A triangle that is
-//! hit at t, as trace::triangle computes it, holds a point within 8 u of that from o + t d; so no
-//! box is left out, or passed over as too far, that holds the nearest hit or one that equals it.
+//! **Rounding.** Origins are widened by 32 u of the greatest coordinate involved. A triangle that is
+//! hit at t, as trace::triangle computes it, holds a point within 8 u of that from o + t d, and the lane
+//! in a distance's last bits adds up to 14 u; so no box is left out, or passed over as too far, that
+//! holds the nearest hit or one that equals it.
 //!
 //! **NaN**, from 0 times infinity where a ray runs in a face, is the first operand of a
 //! minimum or maximum, which then gives the second: the axis sets no bound.
@@ -72,6 +73,19 @@ impl Node {
     }
 }
 
+/// What is done at a leaf, given its index and its number of items: a new limit comes of it. A trait of its own, as
+/// the table of a `dyn FnMut` holds each closure once more, as `FnOnce`.
+pub trait AtLeaf {
+    /// Does so.
+    fn at_leaf(&mut self, leaf: usize, count: usize, counters: &mut Counters) -> f32;
+}
+
+impl<F: FnMut(usize, usize, &mut Counters) -> f32> AtLeaf for F {
+    fn at_leaf(&mut self, leaf: usize, count: usize, counters: &mut Counters) -> f32 {
+        self(leaf, count, counters)
+    }
+}
+
 /// A walk through a tree.
 struct Walker<'a> {
     tree: &'a Tree,
@@ -79,7 +93,7 @@ struct Walker<'a> {
     /// Distance up to which leaves are of interest.
     limit: f32,
     counters: &'a mut Counters,
-    leaf: &'a mut dyn FnMut(usize, usize, &mut Counters) -> f32,
+    leaf: &'a mut dyn AtLeaf,
 }
 
 impl Walker<'_> {
@@ -115,7 +129,7 @@ impl Walker<'_> {
                 }
                 if child & LEAF_BIT != 0 {
                     let (leaf, last) = ((child & !LEAF_BIT) as usize / LEAF, child as usize % LEAF);
-                    self.limit = (self.leaf)(leaf, last + 1, self.counters);
+                    self.limit = self.leaf.at_leaf(leaf, last + 1, self.counters);
                 } else if lanes == 0 {
                     index = child as usize;
                     break;
@@ -132,7 +146,7 @@ impl Tree {
     #[inline(never)]
     pub fn slabs(&self, rays: &Rays8) -> Slabs {
         let reach = self.bounds.lo.abs().max(self.bounds.hi.abs()).max_element();
-        let room = (greatest(rays.origin.max_abs()) + splat(reach)) * splat(1.0 / 1_048_576.0);
+        let room = (greatest(rays.origin.max_abs()) + splat(reach)) * splat(1.0 / 524_288.0);
         Slabs::new(rays, room)
     }
 
@@ -145,7 +159,7 @@ impl Tree {
         (Slabs([x, y, z]), lanes): (&Slabs, u32),
         limit: f32,
         counters: &mut Counters,
-        leaf: &mut dyn FnMut(usize, usize, &mut Counters) -> f32,
+        leaf: &mut dyn AtLeaf,
     ) {
         if self.is_empty() {
             return;

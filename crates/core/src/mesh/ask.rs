@@ -72,22 +72,34 @@ impl Assembly {
         let ends = twice(&ends);
         let inverse = F::ONE / ends;
         let mut limit = greatest(ends).as_array()[0];
-        self.tree.walk((&self.tree.slabs(&rays), 0xff), limit, counters, &mut |leaf, _, counters| {
-            let instance = &self.instances[self.tree.leaves[leaf][0] as usize];
-            let mesh = instance.mesh();
-            let local = instance.local(&rays);
-            let corners = local.direction;
-            let small = corners.length() * splat(SMALL);
-            let pyramid = Pyramid { apex: local.origin.lane(0), corners, small, inverse };
-            mesh.tree.walk((&mesh.tree.slabs(&local), 0xff), limit, counters, &mut |leaf, count, _| {
-                if mesh.tree.leaves[leaf][..count].iter().any(|&i| pyramid.meets(&mesh.triangles[i as usize]))
-                {
-                    limit = -1.0;
-                }
+        self.tree.walk(
+            (&self.tree.slabs(&rays), 0xff),
+            limit,
+            counters,
+            &mut |leaf: usize, _: usize, counters: &mut Counters| {
+                let instance = &self.instances[self.tree.leaves[leaf][0] as usize];
+                let mesh = instance.mesh();
+                let local = instance.local(&rays);
+                let corners = local.direction;
+                let small = corners.length() * splat(SMALL);
+                let pyramid = Pyramid { apex: local.origin.lane(0), corners, small, inverse };
+                mesh.tree.walk(
+                    (&mesh.tree.slabs(&local), 0xff),
+                    limit,
+                    counters,
+                    &mut |leaf: usize, count: usize, _: &mut Counters| {
+                        if mesh.tree.leaves[leaf][..count]
+                            .iter()
+                            .any(|&i| pyramid.meets(&mesh.triangles[i as usize]))
+                        {
+                            limit = -1.0;
+                        }
+                        limit
+                    },
+                );
                 limit
-            });
-            limit
-        });
+            },
+        );
         limit < 0.0
     }
 }

@@ -21,8 +21,8 @@ const SPREAD: f32 = 0.25;
 /// Rays too that are so far apart at a mesh that their square is more than so many of its triangles.
 const COARSE: f32 = 12.0;
 
-/// Greatest coordinate that rays may have.
-const FAR: f32 = 1e18;
+/// Greatest square of an origin's or a direction's length.
+const FAR: f32 = 1e36;
 
 /// Hit ids of the facets that hid a lamp from points nearby, the latest first; below 0 for none.
 pub type Blockers = Cell<[f32; 4]>;
@@ -74,8 +74,9 @@ impl Assembly {
         let (enter, exit) = self.tree.slabs(rays).span(lo, hi, best.t);
         let asked = wanted
             & enter.simd_le(exit)
-            & rays.origin.max_abs().simd_lt(splat(FAR))
-            & rays.direction.max_abs().simd_lt(splat(FAR));
+            // Not so for NaN.
+            & rays.origin.dot(rays.origin).simd_lt(splat(FAR))
+            & rays.direction.dot(rays.direction).simd_lt(splat(FAR));
         if !asked.any() {
             return;
         }
@@ -131,64 +132,75 @@ impl Assembly {
         let limit = |best: &Hits| {
             if single { best.t.as_array()[lane_of(lanes)] } else { greatest(best.t).as_array()[0] }
         };
-        self.tree.walk((slabs, lanes), limit(best), counters, &mut |leaf, _, counters| {
-            let instance = &self.instances[self.tree.leaves[leaf][0] as usize];
-            if any && scene.materials[instance.material].is_transparent() {
-                return limit(best);
-            }
-            let mesh = instance.mesh();
-            let local = instance.local(rays);
-            let [first, _] = instance.ids(base);
-            let slabs = mesh.tree.slabs(&local);
-            let Bounds { lo, hi } = mesh.tree.bounds;
-            let (enter, exit) = slabs.span(lo, hi, best.t);
-            let mut rest = lanes & enter.simd_le(exit).to_bitmask();
-            if rest == 0 {
-                return limit(best);
-            }
-            let apart = spreads.0 + spreads.1 * least(enter);
-            let together = !single && (apart * apart).simd_lt(splat(COARSE * instance.grain)).all();
-            let all = Aim::new(&local);
-            while rest != 0 {
-                let lane = lane_of(rest);
-                let one = |v: F| splat(v.as_array()[lane]);
-                let own;
-                let (aim, lanes, mut found) = if together {
-                    (&all, rest, *best)
-                } else {
-                    own = all.alone(lane);
-                    (&own, rest & rest.wrapping_neg(), Hits { t: one(best.t), id: one(best.id) })
-                };
-                let reach =
-                    |found: &Hits| if together { greatest(found.t) } else { least(found.t) }.as_array()[0];
-                mesh.tree.walk((&slabs, lanes), reach(&found), counters, &mut |leaf, count, counters| {
-                    counters.add(Counter::FacetTests, count * if together { LANES } else { 1 });
-                    let (corners, items) = (&mesh.leaves[leaf], &mesh.tree.leaves[leaf]);
-                    if together {
-                        let [a, b, c] = corners;
-                        for (i, &item) in items[..count].iter().enumerate() {
-                            let one = |p: &V3| V3::splat(p.lane(i));
-                            let id = splat(first + 4.0 * item as f32);
-                            keep(aim, &[one(a), one(b), one(c)], id, any, &mut found);
-                        }
-                    } else {
-                        // All of the leaf at once.
-                        let items = F::from_i32x8(U::new(*items).cast_signed());
-                        keep(aim, corners, splat(first) + items * splat(4.0), any, &mut found);
-                    }
-                    reach(&found)
-                });
-                rest &= !lanes;
-                if together {
-                    *best = found;
-                } else {
-                    let nearest = least(found.t);
-                    best.t.as_mut_array()[lane] = nearest.as_array()[0];
-                    let id = found.t.simd_eq(nearest).select(found.id, INFINITY);
-                    best.id.as_mut_array()[lane] = least(id).as_array()[0];
+        self.tree.walk(
+            (slabs, lanes),
+            limit(best),
+            counters,
+            &mut |leaf: usize, _: usize, counters: &mut Counters| {
+                let instance = &self.instances[self.tree.leaves[leaf][0] as usize];
+                if any && scene.materials[instance.material].is_transparent() {
+                    return limit(best);
                 }
-            }
-            limit(best)
-        });
+                let mesh = instance.mesh();
+                let local = instance.local(rays);
+                let [first, _] = instance.ids(base);
+                let slabs = mesh.tree.slabs(&local);
+                let Bounds { lo, hi } = mesh.tree.bounds;
+                let (enter, exit) = slabs.span(lo, hi, best.t);
+                let mut rest = lanes & enter.simd_le(exit).to_bitmask();
+                if rest == 0 {
+                    return limit(best);
+                }
+                let apart = spreads.0 + spreads.1 * least(enter);
+                let together = !single && (apart * apart).simd_lt(splat(COARSE * instance.grain)).all();
+                let all = Aim::new(&local);
+                while rest != 0 {
+                    let lane = lane_of(rest);
+                    let one = |v: F| splat(v.as_array()[lane]);
+                    let own;
+                    let (aim, lanes, mut found) = if together {
+                        (&all, rest, *best)
+                    } else {
+                        own = all.alone(lane);
+                        (&own, rest & rest.wrapping_neg(), Hits { t: one(best.t), id: one(best.id) })
+                    };
+                    let reach = |found: &Hits| {
+                        if together { greatest(found.t) } else { least(found.t) }.as_array()[0]
+                    };
+                    mesh.tree.walk(
+                        (&slabs, lanes),
+                        reach(&found),
+                        counters,
+                        &mut |leaf: usize, count: usize, counters: &mut Counters| {
+                            counters.add(Counter::FacetTests, count * if together { LANES } else { 1 });
+                            let (corners, items) = (&mesh.leaves[leaf], &mesh.tree.leaves[leaf]);
+                            if together {
+                                let [a, b, c] = corners;
+                                for (i, &item) in items[..count].iter().enumerate() {
+                                    let one = |p: &V3| V3::splat(p.lane(i));
+                                    let id = splat(first + 4.0 * item as f32);
+                                    keep(aim, &[one(a), one(b), one(c)], id, any, &mut found);
+                                }
+                            } else {
+                                // All of the leaf at once.
+                                let items = F::from_i32x8(U::new(*items).cast_signed());
+                                keep(aim, corners, splat(first) + items * splat(4.0), any, &mut found);
+                            }
+                            reach(&found)
+                        },
+                    );
+                    rest &= !lanes;
+                    if together {
+                        *best = found;
+                    } else {
+                        let nearest = least(found.t);
+                        best.t.as_mut_array()[lane] = nearest.as_array()[0];
+                        let id = found.t.simd_eq(nearest).select(found.id, INFINITY);
+                        best.id.as_mut_array()[lane] = least(id).as_array()[0];
+                    }
+                }
+                limit(best)
+            },
+        );
     }
 }

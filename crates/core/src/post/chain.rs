@@ -27,7 +27,7 @@ pub struct Chain {
 impl Chain {
     /// Gives the picture its size, and its pixels eight by eight.
     #[inline(never)]
-    pub fn fill(&mut self, size: [usize; 2], value: &(dyn Fn(usize, usize) -> V3 + Sync)) {
+    pub fn fill(&mut self, size: [usize; 2], value: &dyn Value) {
         self.picture.reset(size[0], size[1], 1);
         write(&mut self.picture, value);
     }
@@ -60,7 +60,7 @@ impl Chain {
                 next.reset(width, height, 1);
                 let around = Around { picture, tiles, glow, seed: hash2(n as u32, 1) };
                 let (across, up) = (2.0 / number(width), 2.0 / number(height));
-                write(next, &|x, y| {
+                write(next, &|x: usize, y: usize| {
                     let px = (splat(number(x) + 0.5) + RAMP) * splat(across) - F::ONE;
                     let py = 1.0 - (number(y) + 0.5) * up;
                     let place = &effect.place;
@@ -76,15 +76,27 @@ impl Chain {
     }
 }
 
+/// Light of eight pixels from (x, y) on. A trait of its own, as the table of a `dyn Fn` holds each closure twice more.
+pub trait Value: Sync {
+    /// That light.
+    fn at(&self, x: usize, y: usize) -> V3;
+}
+
+impl<F: Fn(usize, usize) -> V3 + Sync> Value for F {
+    fn at(&self, x: usize, y: usize) -> V3 {
+        self(x, y)
+    }
+}
+
 /// Writes all pixels of a picture and repeats its edges.
 #[inline(never)]
-fn write(picture: &mut Picture, value: &(dyn Fn(usize, usize) -> V3 + Sync)) {
+fn write(picture: &mut Picture, value: &dyn Value) {
     let (width, height, stride, line) = (picture.width, picture.height, picture.stride(), picture.line());
     let rows = &mut picture.light[REACH * line..(REACH + height) * line];
     parallel::each(rows.chunks_mut(ROWS * line), |strip, rows| {
         for (row, y) in rows.chunks_mut(line).zip(strip * ROWS..) {
             for x in (0..width).step_by(8) {
-                let v = value(x, y);
+                let v = value.at(x, y);
                 for (k, v) in [v.x, v.y, v.z].into_iter().enumerate() {
                     let at = k * stride + PAD + x;
                     row[at..at + 8].copy_from_slice(v.as_array());

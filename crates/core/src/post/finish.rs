@@ -41,7 +41,7 @@ impl Post {
         counters.watch.enter(Phase::Finishing);
         counters.add(Counter::BloomPasses, glow.is_some() as usize);
         let size = [stage.width as usize, stage.height as usize];
-        self.chain.fill(size, &|x, y| develop(stage, tiles, glow, (x, y)));
+        self.chain.fill(size, &|x: usize, y: usize| develop(stage, tiles, glow, (x, y)));
         self.chain.run(&stage.scene.effects, tiles, n, &mut counters);
         counters.watch.stop();
         counters

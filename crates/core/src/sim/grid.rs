@@ -15,8 +15,18 @@ pub const GAP: usize = 8;
 /// An element of a field.
 pub type Eight = [f32; 8];
 
-/// Work on an element: its first cell's place, that cell's number, and the element.
-pub type Work<'a> = dyn Fn([usize; 3], usize, &mut Eight) + Sync + 'a;
+/// Work on a row: its first cell's place, that cell's number, and the row. A trait of its own, as the table of a
+/// `dyn Fn` holds each closure twice more.
+pub trait Work: Sync {
+    /// Does it.
+    fn on(&self, place: [usize; 3], i: usize, row: &mut [Eight]);
+}
+
+impl<F: Fn([usize; 3], usize, &mut [Eight]) + Sync> Work for F {
+    fn on(&self, place: [usize; 3], i: usize, row: &mut [Eight]) {
+        self(place, i, row)
+    }
+}
 
 /// Shape of a grid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -50,19 +60,17 @@ impl Grid {
         z * slice + y * row + GAP - 1 + x
     }
 
-    /// Calls `work` for each element of `out` that isn't border, by slices on all threads; `cells` is how
-    /// many an element stands for, 1 or 8.
+    /// Calls `work` for each row of `out` that isn't border, by slices on all threads; `cells` is how many an
+    /// element stands for, 1 or 8.
     #[inline(never)]
-    pub fn each(&self, out: &mut [Eight], cells: usize, work: &Work) {
+    pub fn each(&self, out: &mut [Eight], cells: usize, work: &dyn Work) {
         let [_, row, slice] = self.steps();
         let [_, ny, nz] = self.size;
         parallel::each(out.chunks_mut(slice / cells).take(nz + 1), |z, out| {
             for (y, out) in out.chunks_mut(row / cells).enumerate() {
                 if z > 0 && (1..=ny).contains(&y) {
-                    for (x, out) in out[GAP / cells..].iter_mut().enumerate() {
-                        let place = [x * cells + 1, y, z];
-                        work(place, self.index(place), out);
-                    }
+                    let place = [1, y, z];
+                    work.on(place, self.index(place), &mut out[GAP / cells..]);
                 }
             }
         });

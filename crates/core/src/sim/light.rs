@@ -53,9 +53,11 @@ impl<'a> Volume<'a> {
         room.shown.reserve(cells.len());
         if now.behind > 0.0 {
             room.shown.extend(cells);
-            grid.each(&mut room.shown, 1, &|_, i, out| {
-                let last = F::new(*out);
-                *out = (last + (F::new(before[i]) - last) * splat(now.behind)).to_array();
+            grid.each(&mut room.shown, 1, &|_: [usize; 3], i: usize, row: &mut [Eight]| {
+                for (i, out) in (i..).zip(row) {
+                    let last = F::new(*out);
+                    *out = (last + (F::new(before[i]) - last) * splat(now.behind)).to_array();
+                }
             });
             shown = &room.shown;
         }

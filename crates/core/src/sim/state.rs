@@ -95,47 +95,50 @@ impl State {
         let at_lamp = lanes(((smoke.lamps[lamp] - smoke.lo) / smoke.cell + 0.5).into());
 
         let cells = &self.cells;
-        grid.each(&mut self.before, 1, &|place, i, out| {
-            let cell = |i: usize| F::new(cells[i]);
-            let old = cell(i);
-            let at = lanes(place.map(|x| x as f32));
-            let [x, y, z, ..] = *(at * scale + shift).floor().fast_trunc_int().as_array();
-            let kind = figure.get([x, y, z]);
-            let solid = Voxels::is_solid(kind);
-            let way = at_lamp - at;
-            let [x, y, z, ..] = (way * way).to_array();
-            let nearer = at + way * splat(REACH / (x + y + z).sqrt());
-            let taken = old.as_array()[DENSITY] * thickness;
-            let came = grid.sample(cells, nearer).as_array()[DARK + lamp];
-            // 1 - (1 - came) exp(-taken), nearly.
-            let taken = taken + 0.5 * taken * taken;
-            let dark = (came + taken) / (1.0 + taken);
-            let mut new = F::ZERO;
-            if !solid && (kind != Voxels::EMPTY || ((old * most).simd_ne(F::ZERO)).any()) {
-                let from = at - old;
-                new = grid.sample(cells, from);
-                let within = from - from.floor();
-                let halves = within * (F::ONE - within);
-                let (mut low, mut high) = (new.at_most(old), new.at_least(old));
-                let mut bend = F::ZERO;
-                for (axis, step) in steps.into_iter().enumerate() {
-                    let (a, b) = (cell(i - step), cell(i + step));
-                    low = low.at_most(a).at_most(b);
-                    high = high.at_least(a).at_least(b);
-                    bend += (a + b - (old + old)) * splat(halves.as_array()[axis]);
+        grid.each(&mut self.before, 1, &|[first, y, z]: [usize; 3], i: usize, row: &mut [Eight]| {
+            for (x, out) in row.iter_mut().enumerate() {
+                let (place, i) = ([first + x, y, z], i + x);
+                let cell = |i: usize| F::new(cells[i]);
+                let old = cell(i);
+                let at = lanes(place.map(|x| x as f32));
+                let [x, y, z, ..] = *(at * scale + shift).floor().fast_trunc_int().as_array();
+                let kind = figure.get([x, y, z]);
+                let solid = Voxels::is_solid(kind);
+                let way = at_lamp - at;
+                let [x, y, z, ..] = (way * way).to_array();
+                let nearer = at + way * splat(REACH / (x + y + z).sqrt());
+                let taken = old.as_array()[DENSITY] * thickness;
+                let came = grid.sample(cells, nearer).as_array()[DARK + lamp];
+                // 1 - (1 - came) exp(-taken), nearly.
+                let taken = taken + 0.5 * taken * taken;
+                let dark = (came + taken) / (1.0 + taken);
+                let mut new = F::ZERO;
+                if !solid && (kind != Voxels::EMPTY || ((old * most).simd_ne(F::ZERO)).any()) {
+                    let from = at - old;
+                    new = grid.sample(cells, from);
+                    let within = from - from.floor();
+                    let halves = within * (F::ONE - within);
+                    let (mut low, mut high) = (new.at_most(old), new.at_least(old));
+                    let mut bend = F::ZERO;
+                    for (axis, step) in steps.into_iter().enumerate() {
+                        let (a, b) = (cell(i - step), cell(i + step));
+                        low = low.at_most(a).at_most(b);
+                        high = high.at_least(a).at_least(b);
+                        bend += (a + b - (old + old)) * splat(halves.as_array()[axis]);
+                    }
+                    new = (new - bend * F::new(MEND)).at_least(low).at_most(high) * F::new(air.keep);
+                    let [.., density, heat, _, _, _] = new.to_array();
+                    new += F::new(air.by_density) * splat(density) + F::new(air.by_heat) * splat(heat);
+                    if kind != Voxels::EMPTY {
+                        new = new.at_least(F::new(air.source));
+                    }
+                    new = quiet(new.at_least(-most).at_most(most));
                 }
-                new = (new - bend * F::new(MEND)).at_least(low).at_most(high) * F::new(air.keep);
-                let [.., density, heat, _, _, _] = new.to_array();
-                new += F::new(air.by_density) * splat(density) + F::new(air.by_heat) * splat(heat);
-                if kind != Voxels::EMPTY {
-                    new = new.at_least(F::new(air.source));
-                }
-                new = quiet(new.at_least(-most).at_most(most));
+                *out = new.to_array();
+                out[DARK..SOLID].copy_from_slice(&old.as_array()[DARK..SOLID]);
+                out[DARK + lamp] = dark;
+                out[SOLID] = f32::from(solid);
             }
-            *out = new.to_array();
-            out[DARK..SOLID].copy_from_slice(&old.as_array()[DARK..SOLID]);
-            out[DARK + lamp] = dark;
-            out[SOLID] = f32::from(solid);
         });
         swap(&mut self.cells, &mut self.before);
         if features::SWIRL && air.swirl > 0.0 {
@@ -144,8 +147,8 @@ impl State {
         }
 
         let cells = &self.cells;
-        grid.each(&mut self.divergence, 8, &|_, i, out| {
-            for (i, out) in (i..).zip(out) {
+        grid.each(&mut self.divergence, 8, &|_: [usize; 3], i: usize, row: &mut [Eight]| {
+            for (i, out) in (i..).zip(row.as_flattened_mut()) {
                 *out = 0.0;
                 for (axis, step) in steps.into_iter().enumerate() {
                     *out += 0.5 * (cells[i + step][axis] - cells[i - step][axis]);
@@ -155,22 +158,26 @@ impl State {
         let divergence = self.divergence.as_flattened();
         for _ in 0..air.sweeps {
             let pressure = self.pressure.as_flattened();
-            grid.each(&mut self.next, 8, &|_, i, out| {
-                let mut sum = -load(&divergence[i..]);
-                for step in steps {
-                    sum += load(&pressure[i - step..]) + load(&pressure[i + step..]);
+            grid.each(&mut self.next, 8, &|_: [usize; 3], i: usize, row: &mut [Eight]| {
+                for (i, out) in (i..).step_by(8).zip(row) {
+                    let mut sum = -load(&divergence[i..]);
+                    for step in steps {
+                        sum += load(&pressure[i - step..]) + load(&pressure[i + step..]);
+                    }
+                    *out = quiet(sum * splat(SHARE)).to_array();
                 }
-                *out = quiet(sum * splat(SHARE)).to_array();
             });
             swap(&mut self.pressure, &mut self.next);
         }
         let pressure = self.pressure.as_flattened();
-        grid.each(&mut self.cells, 1, &|_, i, out| {
-            let mut slope = [0.0; 3];
-            for (slope, step) in slope.iter_mut().zip(steps) {
-                *slope = 0.5 * (1.0 - out[SOLID]) * (pressure[i + step] - pressure[i - step]);
+        grid.each(&mut self.cells, 1, &|_: [usize; 3], i: usize, row: &mut [Eight]| {
+            for (i, out) in (i..).zip(row) {
+                let mut slope = [0.0; 3];
+                for (slope, step) in slope.iter_mut().zip(steps) {
+                    *slope = 0.5 * (1.0 - out[SOLID]) * (pressure[i + step] - pressure[i - step]);
+                }
+                *out = quiet(F::new(*out) - lanes(slope)).to_array();
             }
-            *out = quiet(F::new(*out) - lanes(slope)).to_array();
         });
     }
 
@@ -182,30 +189,34 @@ impl State {
         // What it held is made anew afterwards, and of its border nothing is read but here.
         let (cells, curl) = (&self.cells, &mut self.divergence);
         curl.fill([0.0; 8]);
-        grid.each(curl, 1, &|_, i, out| {
-            let across = |axis: usize, of: usize| {
-                let step = steps[axis];
-                0.5 * (cells[i + step][of] - cells[i - step][of])
-            };
-            let w = [0, 1, 2].map(|k| {
-                let (a, b) = ((k + 1) % 3, (k + 2) % 3);
-                across(a, b) - across(b, a)
-            });
-            out[..3].copy_from_slice(&w);
-            out[3] = Vec3::from_array(w).length();
+        grid.each(curl, 1, &|_: [usize; 3], i: usize, row: &mut [Eight]| {
+            for (i, out) in (i..).zip(row) {
+                let across = |axis: usize, of: usize| {
+                    let step = steps[axis];
+                    0.5 * (cells[i + step][of] - cells[i - step][of])
+                };
+                let w = [0, 1, 2].map(|k| {
+                    let (a, b) = ((k + 1) % 3, (k + 2) % 3);
+                    across(a, b) - across(b, a)
+                });
+                out[..3].copy_from_slice(&w);
+                out[3] = Vec3::from_array(w).length();
+            }
         });
         let curl = &self.divergence;
         let most = lanes([FASTEST; 3]);
         let lane = lanes([1.0; 3]).simd_gt(F::ZERO);
-        grid.each(&mut self.cells, 1, &|_, i, out| {
-            let slope = Vec3::from_array(steps.map(|step| 0.5 * (curl[i + step][3] - curl[i - step][3])));
-            let [x, y, z, ..] = curl[i];
-            // The small number of the paper, which keeps even air from being pushed.
-            let push = cross(slope / (slope.length() + 1e-5), Vec3::new(x, y, z)) * share;
-            if out[SOLID] == 0.0 {
-                let old = F::new(*out);
-                let new = quiet((old + lanes(push.into())).at_least(-most).at_most(most));
-                *out = lane.select(new, old).to_array();
+        grid.each(&mut self.cells, 1, &|_: [usize; 3], i: usize, row: &mut [Eight]| {
+            for (i, out) in (i..).zip(row) {
+                let slope = Vec3::from_array(steps.map(|step| 0.5 * (curl[i + step][3] - curl[i - step][3])));
+                let [x, y, z, ..] = curl[i];
+                // The small number of the paper, which keeps even air from being pushed.
+                let push = cross(slope / (slope.length() + 1e-5), Vec3::new(x, y, z)) * share;
+                if out[SOLID] == 0.0 {
+                    let old = F::new(*out);
+                    let new = quiet((old + lanes(push.into())).at_least(-most).at_most(most));
+                    *out = lane.select(new, old).to_array();
+                }
             }
         });
     }

@@ -27,7 +27,7 @@ const KINDS: [Kind; 12] = [
 /// A chain with a picture of values.
 fn with(value: impl Fn(usize, usize) -> Vec3 + Sync) -> Chain {
     let mut chain = Chain::default();
-    chain.fill(SIZE, &|x, y| V3::from_fn(|lane| value(x + lane, y)));
+    chain.fill(SIZE, &|x: usize, y: usize| V3::from_fn(|lane| value(x + lane, y)));
     chain
 }
 

@@ -89,7 +89,9 @@ fn steps_change_little_an_early_end_less_and_lanes_nothing_at_all() {
     let s = Smoke { steps: 30, ..s };
     seen(&s, |volume, stage| {
         let mut counters = Counters::default();
-        let (mut count, mut worst, mut squares) = (0, 0.0_f32, 0.0);
+        // Half a step through the thickest smoke: what a ray that leaves between two steps, or grazes a puff, may miss.
+        let step = 1.0 - crate::math::scalar::exp(-0.5 * 9.0 * AIR.density * 0.1);
+        let (mut count, mut rough, mut squares) = (0, 0, 0.0);
         for case in 0..400 {
             let random = &mut Random::new(case);
             let rays = packet(|| {
@@ -107,10 +109,11 @@ fn steps_change_little_an_early_end_less_and_lanes_nothing_at_all() {
                 let (t, l) = (through.as_array()[lane], light.lane(lane));
                 let (exact, most) = (fine.as_array()[lane], bright.lane(lane));
                 assert!((0.0..=1.0).contains(&t) && l.min_element() >= 0.0 && l.is_finite(), "case {case}");
-                worst = worst.max((t - exact).abs());
+                let room = step * (1.0 + most.max_element());
+                let off = ((t - exact).abs() / step).max((l - most).abs().max_element() / room);
+                assert!(off < 1.0, "case {case}: {t} and {l} for {exact} and {most}");
+                rough += u32::from(off > 0.1);
                 squares += f64::from(t - exact) * f64::from(t - exact);
-                let room = 0.1 * (1.0 + most.max_element());
-                assert!((l - most).abs().max_element() < room, "case {case}: {l} for {most}");
                 let one = crate::trace::check::splat(&rays, lane);
                 let (alone, own) = march(&one, splat(ends.as_array()[lane]), 1.0);
                 assert_eq!(
@@ -122,9 +125,8 @@ fn steps_change_little_an_early_end_less_and_lanes_nothing_at_all() {
             }
         }
         assert!(count > 300, "{count} of 3200 rays cross thick smoke");
-        // A ray that leaves between two steps, or grazes a puff, is off by up to a step's share.
         let rms = (squares / 3200.0).sqrt();
-        assert!(rms < 0.004 && worst < 0.1, "RMS {rms}, at most {worst}");
+        assert!(rms < 0.004 && rough < 16, "RMS {rms}, {rough} of 3200 off by more than a tenth of that");
     });
 }
 
